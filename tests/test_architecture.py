@@ -59,7 +59,7 @@ ROOMS = {
     "parser_service/analysis": (
         "arrays", "encoded_labels", "answer_forms", "intervals", "clustered", "scores", "outcomes",
         "plan_agreement", "comparing", "slicing", "confusions", "categories", "attractors", "risk_coverage",
-        "probabilities", "edits", "sensitivity", "probe_texts",
+        "probabilities", "sureness", "edits", "sensitivity", "probe_texts",
     ),
     "parser_service/parsers": (
         "conditions", "hyperparameters", "interface", "storage", "registry", "words", "spreading", "remembering",

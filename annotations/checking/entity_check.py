@@ -38,7 +38,10 @@ def entity_problems(
     lookup = Lookup(ontology, predicates) if constants else None
     missing: dict[str, set[Position]] = defaultdict(set)
     for (text, predicate, place), places in constants.items():
-        if lookup is not None and lookup.value(text, predicate, place)[1]:
+        if lookup is None or not lookup.value(text, predicate, place)[1]:
+            continue
+        # Of several places that a word can mean the plan asks for one.
+        if not lookup.places_called(text):
             missing[text] |= places
     for text, places in missing.items():
         said = f"“{text}” of the form is no entity of the world{_in_others(places)}"

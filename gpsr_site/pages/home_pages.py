@@ -17,6 +17,7 @@ from gpsr_site.overview.first_steps import first_steps
 from gpsr_site.overview.flow import stages
 from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import workers_now
+from parser_service.results.answerer_rows import newest_answerer_table
 
 MOST_SHOWN = 3  # things that wait, for each world of the list
 MOST_JOBS = 5  # in the work list; the page of jobs has them all
@@ -56,6 +57,8 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
         "work_groups": work.groups,
         "first_steps": first_steps(counts, request.duties),
         "coverage": TaskCategory.objects.filter(grammar__world=world),
+        "measured": newest_answerer_table(world) if counts.splits else None,
+        "can_be_measured": counts.splits and (counts.templates or counts.evaluated),
         "best": best,
         "recent_runs": world.runs.for_table()[:6],
     }

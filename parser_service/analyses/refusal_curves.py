@@ -13,7 +13,7 @@ from annotations.language.english import say_count
 from annotations.language.forms import UNKNOWN, canonical_text
 from parser_service.analyses.target import Target
 from parser_service.analysis.arrays import Bools
-from parser_service.analysis.probabilities import NO_PROBABILITY, calibration, probability_of
+from parser_service.analysis.probabilities import NO_PROBABILITY, probability_of, reliability
 from parser_service.analysis.risk_coverage import risk_coverage
 
 MOST_POINTS = 200
@@ -48,7 +48,7 @@ def _curve(target: Target, mask: Bools) -> dict[str, Any] | None:
     if None in probabilities:
         about_scores: dict[str, Any] = {"no_probability": NO_PROBABILITY}
     else:
-        measured = calibration(probabilities, answers.is_right[chosen])  # type: ignore[arg-type]
+        measured = reliability(probabilities, answers.is_right[chosen])  # type: ignore[arg-type]
         about_scores = {"calibration_error": measured.error, "brier_score": measured.brier}
     curve = risk_coverage(scores, answers.is_right[chosen], is_unknown[chosen]).thin(MOST_POINTS)
     return {

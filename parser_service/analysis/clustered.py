@@ -7,9 +7,10 @@ independently of each other (Owen, The pigeonhole bootstrap, Annals of Applied S
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from hashlib import sha256
 from typing import TypeAlias
 
 import numpy as np
@@ -21,6 +22,16 @@ from parser_service.analysis.intervals import SAMPLES, SEED, wilson_interval
 Interval: TypeAlias = tuple[float, float]
 Tally: TypeAlias = "Mapping[Hashable, tuple[float, float]]"
 """Cluster → the number of its examples that are right, and of all of them."""
+
+
+def folds_of(clusters: Iterable[str], folds: int) -> dict[str, int]:
+    """Return cluster → its fold, from 0, all folds with as many clusters (the first ones with one more).
+
+    The order is that of their SHA-256, so that it depends on nothing but the clusters. Where there is
+    a single one there is nothing to fit on besides it, and no fold.
+    """
+    ordered = sorted(set(clusters), key=lambda each: (sha256(each.encode()).digest(), each))
+    return {each: at % folds for at, each in enumerate(ordered)} if len(ordered) > 1 else {}
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from parser_service.analysis.arrays import Bools
+from parser_service.analysis.intervals import wilson_interval
 
 BINS = 10
 NO_PROBABILITY = (
@@ -33,9 +34,14 @@ class Bin:
     confidence: float
     accuracy: float
 
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval of the accuracy: Wilson's."""
+        return wilson_interval(self.accuracy * self.count, self.count)
+
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
+class Reliability:
     """``error`` is the expected calibration error: the mean over all answers of how far the accuracy of their
     bin is from its confidence. ``brier`` is the mean squared distance of the probability from 1 for a
     right answer and from 0 for a wrong one. Both are 0 at best; bins without an answer are left out."""
@@ -55,7 +61,7 @@ def probability_of(score: float, kind: str | None) -> float | None:
     return None
 
 
-def calibration(probabilities: ArrayLike, correct: Bools, bins: int = BINS) -> Calibration:
+def reliability(probabilities: ArrayLike, correct: Bools, bins: int = BINS) -> Reliability:
     """Measure how well the probabilities of answers are calibrated, in bins of equal width.
 
     Args:
@@ -78,4 +84,4 @@ def calibration(probabilities: ArrayLike, correct: Bools, bins: int = BINS) -> C
         means = float(given[inside].mean()), float(right[inside].mean())
         filled.append(Bin(at / bins, (at + 1) / bins, int(inside.sum()), *means))
     error = sum(each.count * abs(each.accuracy - each.confidence) for each in filled) / len(given)
-    return Calibration(error, float(((given - right) ** 2).mean()), tuple(filled))
+    return Reliability(error, float(((given - right) ** 2).mean()), tuple(filled))

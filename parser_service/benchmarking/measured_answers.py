@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from parser_service.analysis.clustered import Clustered, Parts, interval_of
-from parser_service.analysis.probabilities import NO_PROBABILITY, calibration, probability_of
+from parser_service.analysis.probabilities import NO_PROBABILITY, probability_of, reliability
 from parser_service.analysis.risk_coverage import risk_coverage
 from parser_service.analysis.scores import Judgement, SamePlan, judge
 from parser_service.parsers.interface import Pair, Parser, ScoreKind
@@ -100,7 +100,7 @@ class PartAnswers:
         numbers = [each for each in given if each is not None]
         if len(numbers) < len(given):
             return {**about, "note": NO_PROBABILITY}
-        measured = calibration(numbers, right)
+        measured = reliability(numbers, right)
         return {
             **about,
             "expected_calibration_error": round(measured.error, DECIMALS),

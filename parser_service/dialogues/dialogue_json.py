@@ -8,7 +8,7 @@ from typing import Any
 from annotations.language.dialogue import DialogueState
 from annotations.language.forms import to_corpus, to_reading
 from annotations.language.grounding import choices_of
-from annotations.language.plans import Plan, doubts_about, make_plan
+from annotations.language.plans import Plan, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, spoken
 from parser_service.dialogues.conversation import state_of
@@ -28,7 +28,7 @@ def plan_of(state: DialogueState, language: WorldLanguage) -> Plan:
 
 def task_plan_in(state: DialogueState, language: WorldLanguage) -> TaskPlan:
     """Return the same in the primitives of the robot."""
-    return task_plan_of(state.form, doubts_about(state.slots), language)
+    return task_plan_of(state.form, (), language, slots=state.slots)
 
 
 def as_json(row: Dialogue) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 from parser_service.models.action_names import ActionNames
 from parser_service.models.analyses import Expectation, Probe, ProbeAnswer, RunAnalysis
+from parser_service.models.answering import AnswererEvaluation, Answering, AnsweringOrder
 from parser_service.models.columns import AnswerColumns, ExampleColumns
 from parser_service.models.dialogues import Dialogue, OfferedEntity, OfferState
 from parser_service.models.evaluations import Evaluation
@@ -14,6 +15,9 @@ from parser_service.models.workers import Worker
 __all__ = [
     "ActionNames",
     "AnswerColumns",
+    "AnswererEvaluation",
+    "Answering",
+    "AnsweringOrder",
     "Checkpoint",
     "Dialogue",
     "EpochMetric",

@@ -13,6 +13,7 @@ GENERATED, PARAPHRASED, MODEL, SAID = "generated", "paraphrased", "model", "said
 
 # What figures call a source → the source of pairs, in the order in which sources are named together.
 SOURCES = {"gen": GENERATED, "para": PARAPHRASED, "model": MODEL, "said": SAID}
+PEOPLES = ("para", "said")  # what people wrote or said themselves
 # What pages call it.
 SOURCE_WORDS = {
     "gen": "generated commands",

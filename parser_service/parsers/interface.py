@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from parser_service.parsers.conditions import Protocol
 
 if TYPE_CHECKING:
+    from annotations.language.grounding import HeardChange
     from annotations.language.ontology import Ontology
     from annotations.language.predicates import Predicate
     from annotations.language.templates import TaskCategory
@@ -53,7 +54,8 @@ class Candidate:
     ``candidates``, or what the parser documents; empty where it does not tell. ``parts`` are the
     numbers that the score is made of, by name. ``is_cut`` says that the utterance is longer than the parser
     reads. ``values`` are the entities of the class tokens of the form, in order, where the parser knows which
-    words it took for which (None for a token of which it does not). None of them tells two answers apart.
+    words it took for which (None for a token of which it does not). ``heard`` is what the parser heard otherwise than
+    it was said, with its places in the utterance as ``normalise_line`` gives it. None of them tells two answers apart.
     """
 
     form: str
@@ -62,6 +64,7 @@ class Candidate:
     parts: Mapping[str, float] = field(default_factory=dict, compare=False)
     is_cut: bool = field(default=False, compare=False)
     values: tuple[str | None, ...] = field(default=(), compare=False)
+    heard: tuple[HeardChange, ...] = field(default=(), compare=False)
 
 
 def refuse(ranked: Sequence[Candidate], score: float) -> list[Candidate]:

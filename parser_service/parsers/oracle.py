@@ -16,7 +16,7 @@ from annotations.language.grammar import (
     print_production,
     read_production,
 )
-from annotations.language.grounding import HeardLattice, UtteranceReader
+from annotations.language.grounding import HeardLattice, HearingReader
 from annotations.language.ontology import Ontology, read_ontology, write_ontology
 from annotations.language.requests import Islands
 from annotations.language.templates import (
@@ -56,14 +56,15 @@ class GrammarOracle(Parser):
     """Returns the form of the template that derives the command (Walker et al. 2019, baselines).
 
     It is right on every generated command by construction and has no answer for what is no command. An
-    utterance is read as it is, then with its entities as class tokens, and then in every way that
-    ``UtteranceReader`` knows; the first of these that the grammar derives counts. It learns nothing from
+    utterance is read as it is, then with its entities as class tokens, then in every way that
+    ``UtteranceReader`` knows, and last through the noise of recognisers and hurried people (``HearingReader``); the
+    first of these that the grammar derives counts. It learns nothing from
     pairs: it consists of the annotated grammar and the ontology of ``Knowledge``, and saves a copy of both.
     """
 
     name = "grammar-oracle"
-    version = 5
-    reads = (2, 3, 4)
+    version = 6
+    reads = (2, 3, 4, 5)
     protocols = (Protocol.GRAMMAR,)
     Config = OracleConfig
 
@@ -78,7 +79,7 @@ class GrammarOracle(Parser):
         self._categories = tuple(self.knowledge.grammar or ())
         self._chart = TemplateChart(self._categories)
         ontology = self.knowledge.ontology or Ontology(())
-        self._reader = UtteranceReader(ontology, self._chart.vocabulary)
+        self.reader = HearingReader(ontology, self._chart.vocabulary)
 
     def fit(
         self,
@@ -108,17 +109,19 @@ class GrammarOracle(Parser):
         return answers
 
     def _candidates(self, utterance: str) -> list[Candidate]:
-        for heard in self._reader.lattices(utterance):
-            found: dict[tuple[str, tuple[str | None, ...]], float] = {}
+        for heard in self.reader.lattices(utterance):
+            found: dict[tuple[str, tuple[str | None, ...]], Candidate] = {}
             for each in self._parse(heard):
                 values = heard.values(each.arcs)
                 key = each.form_text, values if any(values) else ()
-                found.setdefault(key, 0.0 - each.cost)
+                if key not in found:
+                    found[key] = Candidate(
+                        *(each.form_text, 0.0 - each.cost, GRAMMAR_FORM),
+                        values=key[1],
+                        heard=heard.heard(each.changes),
+                    )
             if found:
-                return [
-                    Candidate(form, score, GRAMMAR_FORM, values=values)
-                    for (form, values), score in found.items()
-                ]
+                return list(found.values())
         return []
 
     def understands(self, utterance: str) -> bool:
@@ -130,7 +133,7 @@ class GrammarOracle(Parser):
 
         A few are none: see ``TemplateChart.spans``.
         """
-        for heard in self._reader.lattices(utterance):
+        for heard in self.reader.lattices(utterance):
             if heard.tokens:
                 spans = self._chart.spans(heard.lattice, Budget(CHECK_STEPS))
                 yield Islands(

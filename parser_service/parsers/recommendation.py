@@ -1,18 +1,24 @@
-"""Which parser to train with what a world has, and what to expect of it.
+"""Which parser to train with what a split holds, and what to expect of it there.
 
-The rules and the figures are those of docs/design/parsers.md, "Which row to take"; a test holds the two together.
+A learned parser is the second part of what answers in a world: it is asked where the grammar oracle is silent. So its
+figure on what people say counts first. Rules and figures are those of docs/design/parsers.md, "What to expect"; a
+test holds the two together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from bisect import bisect_right
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
-from annotations.language.corpus import Criterion
-from parser_service.parsers.conditions import Protocol
+from annotations.language.corpus import Overlap, together
+from parser_service.parsers.conditions import GENERATED, Protocol
+from parser_service.parsers.registry import PARSERS
 
 ENOUGH_PAIRS = 100  # to train more than the nearest neighbour
 MANY_PARAPHRASES = 200  # "some hundred": from here on they teach more than glosses do
+MANY_NEW_FORMS = 1 / 3  # share of validation forms from which on a parser has to write new ones
+LEAST_RIGHT = 1 / 2  # below that a parser is wrong more often than right: a question is better
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,22 +26,147 @@ class TrainingMaterial:
     """What there is to learn from.
 
     ``generated`` and ``paraphrases`` count training pairs; paraphrases are all that the grammar did not
-    write. ``trained`` are the parsers that have a run already, or will.
+    write. ``overlaps`` says by source how much of the validation part training has; empty where there is none.
+    ``trained`` are the parsers that have a run already, or will.
     """
 
     generated: int = 0
     paraphrases: int = 0
     has_ontology: bool = False
-    criterion: Criterion = Criterion.COMMAND
+    overlaps: Mapping[str, Overlap] = field(default_factory=dict)
     trained: frozenset[str] = frozenset()
 
     @property
+    def validation(self) -> Overlap:
+        """The validation part, all sources together."""
+        return together(self.overlaps.values())
+
+    @property
+    def said(self) -> Overlap:
+        """What the validation part has of people; where it has nothing, generated commands tell which forms they will
+        ask for."""
+        said = together(each for source, each in self.overlaps.items() if source != GENERATED)
+        return said if said.forms else Overlap(self.generated_forms.forms)
+
+    @property
+    def generated_forms(self) -> Overlap:
+        return self.overlaps.get(GENERATED, Overlap())
+
+    @property
     def asks_new_forms(self) -> bool:
-        return self.criterion == Criterion.LOGICAL_FORM
+        return self.validation.new_form_share >= MANY_NEW_FORMS
 
     @property
     def asks_new_commands(self) -> bool:
-        return self.criterion == Criterion.SOURCE_COMMAND
+        return self.said.new_command_share >= MANY_NEW_FORMS
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Exact match of a parser, fractions of 1, as docs/design/parsers.md has it with the commands that measured it.
+
+    On what people say: ``said`` where it learned from paraphrases too, ``from_generated`` where from generated commands
+    alone, ``other_commands`` where nobody rewrote the command before (None: not measured), ``new_forms`` where no
+    training pair has the form. On generated commands: ``generated`` by the training pairs that their form has at
+    least, empty where that was not measured.
+    """
+
+    said: float
+    from_generated: float | None = None
+    other_commands: float | None = None
+    new_forms: float = 0.0
+    generated: tuple[tuple[int, float], ...] = ()
+
+    def of_people(self, paraphrases: int, said: Overlap) -> float:
+        """Return the share to expect of what people say, where ``paraphrases`` were learned from.
+
+        Between none and ``MANY_PARAPHRASES`` the figures pass into each other in proportion.
+        """
+        taught = min(1.0, paraphrases / MANY_PARAPHRASES)
+        known = self.said
+        if self.from_generated is not None:
+            known = taught * self.said + (1 - taught) * self.from_generated
+        others = known if self.other_commands is None else min(known, self.other_commands)
+        new = said.examples_of_new_forms / said.examples if said.examples else 0.0
+        rewritten = max(0.0, 1 - said.new_command_share)
+        return (1 - new) * (rewritten * known + (1 - rewritten) * others) + new * self.new_forms
+
+    def of_generated(self, generated: Overlap) -> float | None:
+        """Return the share to expect of generated commands; None where it was not measured or none are asked."""
+        if not self.generated or not generated.forms:
+            return None
+        least = [pairs for pairs, _ in self.generated]
+
+        def right(taught: int) -> float:
+            place = bisect_right(least, taught)
+            return self.generated[place - 1][1] if place else self.new_forms
+
+        return sum(form.asked * right(form.taught) for form in generated.forms) / generated.examples
+
+
+MEASURED = {
+    "knn": Measured(
+        0.55, 0.41, 0.35, generated=((1, 0.07), (2, 0.14), (5, 0.29), (9, 0.64), (33, 0.44))
+    ),
+    "linear": Measured(
+        0.80,
+        0.53,
+        0.61,
+        generated=((1, 0.03), (2, 0.13), (3, 0.23), (5, 0.39), (9, 0.88), (33, 0.99)),
+    ),
+    "ranker": Measured(0.88, 0.71, 0.74, 0.61, ((1, 0.98),)),
+    "seq2seq": Measured(0.75, 0.08),
+    "seq2seq-minilm": Measured(0.79, new_forms=0.31),
+    "seq2seq-glove": Measured(0.76, 0.23, new_forms=0.06),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What to expect of a parser: exact match of generated commands and of what people say, fractions of 1, None
+    where nobody has measured it. Or ``instead``, a text. Then how long a training takes and the memory it needs."""
+
+    generated: float | None = None
+    said: float | None = None
+    instead: str = ""
+    time: str = ""
+    memory: str = ""
+
+    @property
+    def accuracy(self) -> str:
+        """The figures in words; empty where there are none."""
+        shares = ((self.generated, "generated commands"), (self.said, "what people say"))
+        shown = [f"{100 * share:.0f} % of {words}" for share, words in shares if share is not None]
+        return self.instead or "; ".join(shown)
+
+
+RANKER_TIME, RANKER_MEMORY = "minutes on 2 cores", "2 GB"
+# What does not depend on the split.
+EXPECTED = {
+    "grammar-oracle": Expectation(1.0, 0.05, time="no training"),
+    "knn": Expectation(time="a second"),
+    "linear": Expectation(time="seconds", memory="0.5 GB"),
+    "ranker": Expectation(time=RANKER_TIME, memory=RANKER_MEMORY),
+    "seq2seq": Expectation(time="minutes on 1 core", memory="0.4 GB"),
+    "seq2seq-minilm": Expectation(time="a minute on 1 core", memory="0.6 GB"),
+    "seq2seq-glove": Expectation(time="minutes on 1 core", memory="0.4 GB"),
+    "t5": Expectation(
+        instead="that of the weights you bring", time="depends on them", memory="8 GB or a GPU"
+    ),
+    "llm": Expectation(instead="that of the model", time="no training; seconds an answer"),
+}
+
+
+def expectation_of(parser: str, material: TrainingMaterial) -> Expectation | None:
+    """Return what to expect of a parser with this material; None where nobody has measured it."""
+    expected, measured = EXPECTED.get(parser), MEASURED.get(parser)
+    if expected is None or measured is None:
+        return expected
+    return replace(
+        expected,
+        generated=measured.of_generated(material.generated_forms),
+        said=measured.of_people(material.paraphrases, material.said),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,96 +181,49 @@ class Recommendation:
 def recommend(material: TrainingMaterial, lacking: Collection[str] = ()) -> Recommendation:
     """Return the parser to train next; ``lacking`` are those whose weights or server are not there.
 
-    What answers within seconds comes first, then the most accurate one.
+    What learns within seconds comes first where it is expected to be right more often than not, then the ranker.
     """
     known = Protocol.DOMAIN if material.has_ontology else Protocol.STRICT
-    if material.asks_new_forms:
-        if "ranker" in lacking:
-            return Recommendation(
-                "seq2seq",
-                Protocol.STRICT,
-                "This split asks for forms that training has not: it writes new ones.",
-            )
-        return Recommendation(
-            "ranker", known, "This split asks for forms that training has not: it makes new ones."
-        )
     pairs = material.generated + material.paraphrases
-    if pairs < ENOUGH_PAIRS and "knn" not in material.trained:
+    if pairs < ENOUGH_PAIRS and "knn" not in material.trained and not material.asks_new_forms:
+        reason = f"It needs no more than a few pairs; from {ENOUGH_PAIRS} on others are better."
+        return Recommendation("knn", Protocol.STRICT, reason)
+    is_fit = _is_fit("linear", material)
+    if is_fit and "linear" not in material.trained:
         return Recommendation(
-            "knn",
-            Protocol.STRICT,
-            f"It needs no more than a few pairs; from {ENOUGH_PAIRS} on others are better.",
+            "linear", known, "It learns within seconds. The form ranker comes next."
         )
-    if "linear" not in material.trained:
+    if "ranker" not in lacking:
+        is_strict = material.paraphrases >= MANY_PARAPHRASES and not (
+            material.asks_new_forms or material.asks_new_commands
+        )
         return Recommendation(
-            "linear", known, "Good within seconds. The most accurate parser comes next."
+            "ranker", Protocol.STRICT if is_strict else known, _why_ranker(material, is_fit)
         )
-    if "ranker" in lacking:
-        return Recommendation("linear", known, "The most accurate parser that lacks nothing here.")
-    if material.paraphrases < MANY_PARAPHRASES:
-        reason = "The most accurate one. Glosses of the predicates stand in for the paraphrases that are few."
-        return Recommendation("ranker", known, reason)
-    if material.asks_new_commands:
-        reason = "The most accurate one; this split asks for commands that nobody has rewritten."
-        return Recommendation("ranker", known, reason)
-    return Recommendation("ranker", Protocol.STRICT, "The most accurate one.")
+    if is_fit:
+        return Recommendation(
+            "linear", known, "What is expected to be right more often needs more."
+        )
+    return Recommendation(
+        "seq2seq", Protocol.STRICT, "It writes forms that training does not have."
+    )
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation:
-    """What was measured of a parser elsewhere: exact match, how long a training takes, the memory it needs."""
-
-    accuracy: str
-    time: str = ""
-    memory: str = ""
-
-
-RANKER_TIME, RANKER_MEMORY = "minutes on 2 cores", "2 GB"
-GLOVE = Expectation("76 % of paraphrases", "minutes on 1 core", "0.4 GB")
-EXPECTED = {
-    "grammar-oracle": Expectation(
-        "100 % of generated commands; 5 % of what people say", "no training"
-    ),
-    "knn": Expectation(
-        "69 % of generated commands; 52 to 55 % of paraphrases; no new form", "a second"
-    ),
-    "linear": Expectation(
-        "81 % of the starter world's paraphrases; 78 to 80 % of the published ones; no new form",
-        "seconds",
-        "0.5 GB",
-    ),
-    "seq2seq": Expectation("72 to 75 % of paraphrases", "minutes on 1 core", "0.4 GB"),
-    "seq2seq-minilm": Expectation("76 to 82 % of paraphrases", "a minute on 1 core", "0.6 GB"),
-    "seq2seq-glove": GLOVE,
-    "t5": Expectation("that of the weights you bring", "depends on them", "8 GB or a GPU"),
-    "llm": Expectation("that of the model", "no training; seconds an answer"),
-}
-# By form; the first two never answer with another form, "paper" is where nobody has measured it here.
-ON_NEW_FORMS = {
-    "knn": "0 % on unseen forms",
-    "linear": "0 % on unseen forms",
-    "seq2seq": "0 % on unseen forms in the paper",
-    "seq2seq-minilm": "31 % on unseen forms",
-    "seq2seq-glove": "6 % on unseen forms in the paper",
-}
-RANKER = {
-    "few paraphrases": "71 % of paraphrases",
-    "many paraphrases": "86 to 89 % of paraphrases; 92 % of paraphrases and generated commands together",
-    "new commands": "74 % of paraphrases of other commands",
-    "new forms": "61 % on unseen and 85 % on known forms",
-}
+def _is_fit(parser: str, material: TrainingMaterial) -> bool:
+    """Return whether a parser can answer enough of the validation part's forms, and is expected to be right on half of
+    what is asked, generated or said."""
+    if material.asks_new_forms and not PARSERS[parser].writes_new_forms:
+        return False
+    expected = expectation_of(parser, material)
+    shares = (expected.generated, expected.said) if expected else ()
+    return all(share is None or share >= LEAST_RIGHT for share in shares)
 
 
-def expectation_of(parser: str, material: TrainingMaterial) -> Expectation | None:
-    """Return what to expect of a parser with this material; None where nobody has measured it."""
-    if parser != "ranker":
-        if material.asks_new_forms and parser in ON_NEW_FORMS:
-            return replace(EXPECTED[parser], accuracy=ON_NEW_FORMS[parser])
-        return EXPECTED.get(parser)
+def _why_ranker(material: TrainingMaterial, is_linear_fit: bool) -> str:
     if material.asks_new_forms:
-        case = "new forms"
-    elif material.paraphrases < MANY_PARAPHRASES:
-        case = "few paraphrases"
-    else:
-        case = "new commands" if material.asks_new_commands else "many paraphrases"
-    return Expectation(RANKER[case], RANKER_TIME, RANKER_MEMORY)
+        return "A third or more of what validation asks for has a form that training does not have: it makes new ones."
+    if not is_linear_fit:
+        return "Training has few pairs of a form here, or few paraphrases. It needs fewer than the others."
+    if material.asks_new_commands:
+        return "This split asks for commands that nobody has rewritten. It is good at them."
+    return "It is good at new wording."

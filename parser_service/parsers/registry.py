@@ -57,8 +57,9 @@ class RegistryEntry:
     most_subwords: int = 0
 
 
+ORACLE = "grammar-oracle"
 PARSERS: dict[str, RegistryEntry] = {
-    "grammar-oracle": RegistryEntry(
+    ORACLE: RegistryEntry(
         dotted="parser_service.parsers.oracle.GrammarOracle",
         config="parser_service.parsers.oracle.OracleConfig",
         title="Grammar oracle",
@@ -66,7 +67,7 @@ PARSERS: dict[str, RegistryEntry] = {
         "Learns nothing; has no answer outside the grammar.",
         version=5,
         protocols=(Protocol.GRAMMAR,),
-        in_short="Reads a command of the annotated grammar as people write it; knows no other command.",
+        in_short="Reads a command of the annotated grammar; answers without a run. A run is for comparison alone.",
         needs=Needs.NOTHING,
         queue="quick",
         learns=False,
@@ -177,7 +178,7 @@ PARSERS: dict[str, RegistryEntry] = {
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
         version=13,
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
-        in_short="Chooses the form that fits best among known and new ones; the most accurate on new wording.",
+        in_short="Chooses the form that fits best among known and new ones; needs few pairs of each form.",
         loss_unit="nats an utterance",
         most_subwords=64,
     ),

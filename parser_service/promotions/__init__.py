@@ -1,1 +1,1 @@
-"""Verbs: promote a run, so that it answers in its world; roll back; propose and decline."""
+"""Verbs: promote a run, so that it is the learned part of what answers in its world; roll back; propose and decline."""

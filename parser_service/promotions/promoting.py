@@ -1,4 +1,4 @@
-"""Verbs: make a run the one that answers in its world, go back to the one before, decline a proposal."""
+"""Verbs: make a run the learned part of what answers in its world, go back to the one before, decline a proposal."""
 
 from __future__ import annotations
 
@@ -13,22 +13,38 @@ from annotations.language.errors import Refusal
 from annotations.models import User, World
 from annotations.models.background import Status
 from parser_service.models import Promotion, PromotionState, TrainingRun
+from parser_service.parsers.registry import title_of, untrained
 from parser_service.promotions.score_evidence import evidence_for
 
 MOST_REASON = 500  # characters
 
 
 def promoted_run(world: World) -> TrainingRun | None:
-    """Return the run that answers in ``world``; None before the first promotion."""
+    """Return the run that was promoted last in ``world``; None before the first promotion."""
     present = world.promotions.promoted().select_related("run__split").first()
     return present.run if present else None
 
 
-def previous_run(world: World) -> TrainingRun | None:
-    """Return the run that answered before the present one; None where there was none.
+def learned_part(world: World) -> TrainingRun | None:
+    """Return the run that is the learned part of what answers in ``world``: the promoted one.
 
-    After rolling back it is the one before that to which was rolled back, so that going back again goes
-    further back.
+    None before the first promotion, and where an older version promoted a run of the grammar oracle: the oracle answers
+    from the world as it is now, not from a run.
+    """
+    run = promoted_run(world)
+    return run if run and is_learned(run) else None
+
+
+def is_learned(run: TrainingRun) -> bool:
+    """Return whether a run can be the learned part: its parser learns from pairs."""
+    return run.parser not in untrained()
+
+
+def previous_run(world: World) -> TrainingRun | None:
+    """Return the learned part before the present one; None where there was none.
+
+    Runs of parsers that learn nothing do not count. After rolling back it is the one before that to which was rolled
+    back, so that going back again goes further back.
     """
     rows = world.promotions.promoted().select_related("run__split")
     line: list[TrainingRun] = []  # the runs that a person would undo, one after the other
@@ -37,15 +53,22 @@ def previous_run(world: World) -> TrainingRun | None:
             del line[line.index(row.run) + 1 :]
         else:
             line.append(row.run)
-    return line[-2] if len(line) > 1 else None
+    return next((run for run in reversed(line[:-1]) if is_learned(run)), None)
 
 
 def promote(run: TrainingRun, by: User | None, reason: str = "") -> Promotion:
-    """Let ``run`` answer in its world from now on. ``by`` is None where a rule decides.
+    """Make ``run`` the learned part of what answers in its world. ``by`` is None where a rule decides.
 
     An open proposal of this run becomes the promotion; those of other runs are overtaken. Raises
-    Refusal where the run has not succeeded or answers already.
+    Refusal where its parser learns nothing, where the run has not succeeded, or is promoted already.
     """
+    if not is_learned(run):
+        raise Refusal(
+            f"The {title_of(run.parser).lower()} answers from the world as it is and needs no run, so there is nothing "
+            "to promote. Promote a run of a parser that learns: it answers where the oracle is silent.",
+            "needs_no_run",
+            HTTPStatus.CONFLICT,
+        )
     if run.status != Status.SUCCEEDED:
         raise Refusal(
             f"Run {run.pk} is {run.status}; only a run that succeeded can be promoted.",
@@ -71,11 +94,11 @@ def promote(run: TrainingRun, by: User | None, reason: str = "") -> Promotion:
 
 
 def roll_back(world: World, by: User, reason: str = "") -> Promotion:
-    """Let the run answer that answered before the present one. Raises Refusal where there is none."""
+    """Promote the learned part before the present one. Raises Refusal where there is none."""
     run = previous_run(world)
     if run is None:
         raise Refusal(
-            "No other run answered in this world before, so there is none to go back to.",
+            "No other run was promoted in this world before, so there is none to go back to.",
             "no_run_before",
             HTTPStatus.CONFLICT,
         )

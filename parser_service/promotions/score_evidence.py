@@ -6,24 +6,46 @@ from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.corpus import KNOWN
-from parser_service.models import Evaluation, TrainingRun
+from annotations.splits.overlaps import new_form_share
+from parser_service.models import TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import in_words
+from parser_service.parsers.recommendation import LEAST_RIGHT, MANY_NEW_FORMS
+from parser_service.parsers.registry import PARSERS
 
-SPOKEN = (
-    "para",
-    "said",
-)  # test sources of what people say; the first that a run was tested on counts
+SPOKEN = ("para", "said")  # test sources of what people say; the first with enough of them counts
+ENOUGH_SAID = 20  # utterances of people, to judge a run by them
 # What runs are compared on: the test part is looked at when the choice is made.
 COMPARED_ON = "validation"
 
 
-def spoken_low(run: TrainingRun) -> float | None:
-    """Return the lower end of the 95 % interval on validation paraphrases, a fraction of 1, and where there are none,
-    on what people said; None for a run that was not asked any, or by form was asked for unseen forms alone."""
-    scores = shown_scores(run.evaluations.all(), run.split.criterion)
-    shown = next((scores[COMPARED_ON, of] for of in SPOKEN if (COMPARED_ON, of) in scores), None)
-    return None if shown is None or shown.alone else shown.interval[0]
+def judged_by(*runs: TrainingRun) -> list[ShownScore]:
+    """Return the scores by which ``runs`` are compared, one of each, all on one test source; none where there is no
+    source that all were tested on.
+
+    What people say counts, where each run was asked enough of it: a learned parser answers where the grammar oracle is
+    silent. Else generated commands and paraphrases together do, then generated commands, then what there is of people.
+    """
+    of_runs = [
+        {
+            source: score
+            for (part, source), score in shown_scores(
+                run.evaluations.all(), run.split.criterion
+            ).items()
+            if part == COMPARED_ON
+        }
+        for run in runs
+    ]
+    enough = [
+        {source for source, score in scores.items() if score.score.count >= ENOUGH_SAID}
+        for scores in of_runs
+    ]
+    shared = set.intersection(*(set(scores) for scores in of_runs))
+    order = [source for source in SPOKEN if all(source in of_run for of_run in enough)]
+    for source in (*order, "mixed", "gen", *SPOKEN):
+        if source in shared:
+            return [scores[source] for scores in of_runs]
+    return []
 
 
 def known_low(run: TrainingRun) -> float:
@@ -33,17 +55,27 @@ def known_low(run: TrainingRun) -> float:
     return next((asked[source].interval_low for source in SPOKEN if source in asked), 0.0)
 
 
-def is_right_on_paraphrases(run: TrainingRun) -> bool:
-    """Return whether the run was tested on paraphrases, or on what people said, and is right on some."""
-    return run.evaluations.filter(test_source__in=SPOKEN, correct__gt=0).exists()
-
-
-def spoken_score(run: TrainingRun) -> Evaluation | None:
-    """Return the score on validation paraphrases, where there are none that on what people said; None for a run
-    that was not asked any."""
-    scores = run.evaluations.all()  # which may have been fetched already
-    asked = {each.test_source: each for each in scores if each.part == COMPARED_ON}
-    return next((asked[source] for source in SPOKEN if source in asked), None)
+def why_not(run: TrainingRun) -> str:
+    """Say why the rule does not promote a run, whatever is promoted now; empty where nothing speaks against it."""
+    entry = PARSERS.get(run.parser)
+    if entry is None or not entry.learns:
+        return "It learns nothing, so it needs no run."
+    if run.train_share != 1:
+        return "It learned from a share of the training pairs."
+    if not entry.writes_new_forms and new_form_share(run.split) >= MANY_NEW_FORMS:
+        return "A third or more of the validation part asks for forms that it cannot answer with."
+    scores = shown_scores(run.evaluations.all(), run.split.criterion)
+    asked = [
+        score
+        for (part, source), score in scores.items()
+        if part == COMPARED_ON
+        and (source == "gen" or (source in SPOKEN and score.score.count >= ENOUGH_SAID))
+    ]
+    if not asked:
+        return f"It was tested on fewer than {ENOUGH_SAID} utterances of people, and on no generated command."
+    if any(score.accuracy < LEAST_RIGHT for score in asked):
+        return "It is wrong more often than right on what people say, or on generated commands."
+    return ""
 
 
 @dataclass(frozen=True, slots=True)

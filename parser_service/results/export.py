@@ -8,6 +8,7 @@ from typing import Any
 
 from annotations.models import World
 from parser_service.models.evaluations import KNOWN_FORMS, UNSEEN
+from parser_service.results.answerer_rows import answerer_tables, as_row
 from parser_service.results.measures import Measure
 from parser_service.results.result_choices import ResultsChoices
 from parser_service.results.seed_figures import AccuracyFigure
@@ -87,7 +88,9 @@ def rows_of(tables: Iterable[AccuracyTable]) -> Iterator[tuple[Any, ...]]:
 def as_json(
     world: World, choices: ResultsChoices, tables: Iterable[AccuracyTable]
 ) -> dict[str, Any]:
-    """Return the choices of the page and the rows of ``rows_of``, each with its names."""
+    """Return the choices of the page, the rows of ``rows_of``, each with its names, and what a robot gets from the
+    answerer of the world by source."""
+    measured = answerer_tables(world, choices.splits, choices.part)
     return {
         "world": world.name,
         "part": choices.part,
@@ -95,6 +98,7 @@ def as_json(
         "measures": list(choices.measures),
         "published": choices.published,
         "figures": [dict(zip(HEADER, row, strict=True)) for row in rows_of(tables)],
+        "answerer": [as_row(each.row) for table in measured for each in table.rows],
     }
 
 

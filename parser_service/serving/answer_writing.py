@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from annotations.language.english import MOST_STAND_INS, stand_in
-from annotations.language.forms import Form, Unknown
+from annotations.language.forms import Form
 from annotations.language.grounding import (
     Anonymized,
     Deanonymized,
     Slot,
     UtteranceMentions,
     fill_all,
+    is_asked_plainly,
     named_entities,
     resolve_slots,
     with_values,
@@ -29,16 +29,13 @@ from parser_service.serving.outlines import (
 )
 from parser_service.serving.parse_answers import (
     ParsedCandidate,
-    ParsedUtterance,
     Reading,
     answer_with,
     as_json,
     best_first,
     form_of,
-    is_cut_in,
     questions_of,
     score_of,
-    unknown_tokens,
     warnings_about,
 )
 from parser_service.serving.preparing import WorldLanguage
@@ -48,7 +45,7 @@ _SIGNS = tuple((stand_in(n), stand_in(n, is_plural=True)) for n in range(MOST_ST
 
 
 class AnswerWriter:
-    """Writes what ``parse_answers.read_answers(…).as_json()`` says, character for character.
+    """Writes the candidates of ``parse_answers.read_answers(…).as_json()``, character for character.
 
     What depends on the form alone is made once for each form; an utterance puts its entities into it. Where an
     outline cannot say an answer, the answer is made by itself. Several threads may write.
@@ -58,27 +55,12 @@ class AnswerWriter:
         self.language = language
         self._outlines = Outlines(language)
 
-    def write(
-        self,
-        about: Mapping[str, Any],
-        heard: Anonymized,
-        text: str,
-        candidates: Sequence[Candidate],
-    ) -> str:
-        """Return the answer to an utterance of which a parser was given ``text``, after what is ``about`` it: who
-        answers, and the ``score_kind`` of the candidates."""
-        warnings = unknown_tokens(heard.original, self.language.ontology)
-        parse = ParsedUtterance(heard, text, (), warnings, is_cut_in(candidates))
-        head = {**about, **parse.as_json()}
+    def readings(
+        self, heard: Anonymized, candidates: Sequence[Candidate], score_kind: str | None
+    ) -> list[Reading[str]]:
+        """Return the readings of the candidates for what was heard, best first; each with its answer as JSON."""
         said = UtteranceMentions(heard, self.language.ontology)
-        written = [self._write(each, said) for each in candidates]
-        readings = best_first(written, heard, about.get("score_kind"))
-        if readings:
-            form = form_of(readings[0].candidate.form)
-            head["is_unknown"] = form is None or isinstance(form, Unknown)
-        del head["candidates"]
-        answers = ", ".join(each.answer for each in readings)
-        return f'{as_json(head)[:-1]}, "candidates": [{answers}]}}'
+        return best_first([self._write(each, said) for each in candidates], heard, score_kind)
 
     def _write(self, candidate: Candidate, heard: UtteranceMentions) -> Reading[str]:
         form = form_of(candidate.form)
@@ -103,6 +85,8 @@ class AnswerWriter:
 
     def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str] | None:
         """Return the outline with its entities; None where it would say something else."""
+        if not all(slot.filler is not None or is_asked_plainly(slot) for slot in slots):
+            return None  # the plan asks for it in words of this utterance
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
         if len({value.casefold() for _, value in put_in}) < len(put_in):
             return None  # who is named twice is one person

@@ -17,16 +17,21 @@ from typing import Any
 from prometheus_client import CONTENT_TYPE_LATEST
 
 from annotations.language.errors import Refusal
+from parser_service.parsers.registry import untrained
+from parser_service.serving.answerer import USUAL_BEAM, Answerer, NotServed
 from parser_service.serving.lines import answer_lines, read_object
 from parser_service.serving.parse_answers import as_json
-from parser_service.serving.preparing import require_beam, require_utterance
-from parser_service.serving.shelf import NotServed, ServedParser, Shelf
+from parser_service.serving.preparing import (
+    MOST_ALTERNATIVES,
+    require_beam,
+    require_utterance,
+)
+from parser_service.serving.shelf import Shelf
 
 logger = logging.getLogger(__name__)
 
 JSON, JSON_LINES = "application/json", "application/jsonl"
 PARSE_ADDRESS = re.compile(r"^/api/v1/worlds/(?P<world>[a-z0-9][a-z0-9_-]*)/parse/$")
-USUAL_BEAM = 5
 LOADING_PATIENCE = 20.0  # seconds that a request waits for a parser that is being loaded
 
 REASONS = {
@@ -90,10 +95,10 @@ class ParseApplication:
         began = time.perf_counter()
         try:
             asked = read_object(body)
-            utterance = require_utterance(asked.get("utterance"))
+            utterances = _utterances(asked)
             beam = require_beam(asked.get("beam", USUAL_BEAM))
-            service = self._find(world, asked.get("run"))
-            (answer,) = service.parse([utterance], beam)
+            answerer = self._find(world, asked.get("run"), asked.get("parser", ""))
+            answer = answerer.write(answerer.ask_best(utterances, beam))
         except NotServed as error:
             self._count(world if error.status != 404 else "", error.status)
             raise
@@ -119,24 +124,43 @@ class ParseApplication:
             raise NotServed(400, f"run and beam are whole numbers. {error.message}") from error
         except ValueError:
             raise NotServed(400, "run and beam are whole numbers.") from None
-        service = self._find(world, run)
+        answerer = self._find(world, run, query.get("parser", ""))
         self._count(world, 200)
         headers = [("Content-Type", JSON_LINES)]
         start_response(f"200 {REASONS[200]}", headers)
-        return self._answer_lines(service, body, beam)
+        return self._answer_lines(answerer, body, beam)
 
-    def _answer_lines(self, service: ServedParser, body: bytes, beam: int) -> Iterator[bytes]:
-        for answers in answer_lines(service, body, beam):
+    def _answer_lines(self, answerer: Answerer, body: bytes, beam: int) -> Iterator[bytes]:
+        for answers in answer_lines(answerer, body, beam):
             yield _encode("".join(f"{answer}\n" for answer in answers))
-            self._shelf.metrics.utterances.labels(world=service.world).inc(len(answers))
+            self._shelf.metrics.utterances.labels(world=answerer.world).inc(len(answers))
 
-    def _find(self, world: str, run: object) -> ServedParser:
+    def _find(self, world: str, run: object, parser: object) -> Answerer:
         if run is not None and (not isinstance(run, int) or isinstance(run, bool)):
             raise NotServed(400, "run has to be the number of a run.")
-        return self._shelf.find(world, run, LOADING_PATIENCE)
+        if parser not in ("", *untrained()):
+            known = ", ".join(untrained())
+            raise NotServed(400, f"parser has to be one that needs no run: {known}.")
+        if run is not None and parser:
+            raise NotServed(400, "Name a run or a parser, not both.")
+        return self._shelf.find(world, run, LOADING_PATIENCE, str(parser))
 
     def _count(self, world: str, status: int) -> None:
         self._shelf.metrics.requests.labels(world=world, status=str(status)).inc()
+
+
+def _utterances(asked: dict[str, Any]) -> list[tuple[str, float]]:
+    """Return the utterance of a request, or the alternatives of a recogniser, each with its score. Raises Refusal."""
+    alternatives = asked.get("alternatives")
+    if not alternatives:
+        return [(require_utterance(asked.get("utterance")), 0.0)]
+    try:
+        offered = [(each["utterance"], float(each["score"])) for each in alternatives]
+    except (KeyError, TypeError, ValueError) as error:
+        raise Refusal(
+            "alternatives have to be objects with an utterance and a score.", "bad_alternatives"
+        ) from error
+    return [(require_utterance(text), score) for text, score in offered[:MOST_ALTERNATIVES]]
 
 
 def _encode(text: str) -> bytes:

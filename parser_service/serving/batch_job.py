@@ -24,7 +24,7 @@ def parse_batch(job: Job, progress: Progress) -> dict[str, Any]:
     progress.report(0, "loading the parser")
     # Nobody waits for one answer: a language model may take as long as it needs.
     shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
-    service = shelf.load(job.world_name, job.arguments["run"], job.arguments.get("parser", ""))
+    answerer = shelf.load(job.world_name, job.arguments["run"], job.arguments.get("parser", ""))
     with kept_uploads(job) as (upload,):
         lines = upload.read()
     count, answered = len(numbered_lines(lines)), 0
@@ -33,11 +33,11 @@ def parse_batch(job: Job, progress: Progress) -> dict[str, Any]:
     beside = result.with_name(f"{result.name}.{job.attempt}.part")
     try:
         with beside.open("w", encoding="utf-8", errors="backslashreplace") as file:
-            for answers in answer_lines(service, lines, job.arguments["beam"]):
+            for answers in answer_lines(answerer, lines, job.arguments["beam"]):
                 file.writelines(f"{answer}\n" for answer in answers)
                 answered += len(answers)
                 progress.report(answered / count, "parsing")
         beside.replace(result)
     finally:
         beside.unlink(missing_ok=True)
-    return {"lines": count, "run": service.parser.run, "parser": service.parser.name}
+    return {"lines": count, "run": answerer.run, "parser": answerer.names}

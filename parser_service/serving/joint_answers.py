@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
+from annotations.language.grounding import Slot
 from annotations.language.plans import PlanProblem, Trouble
 from annotations.language.recipes import (
     MOST_COMMANDS,
@@ -20,15 +19,10 @@ from annotations.language.recipes import (
     join,
     spoken,
 )
-from annotations.language.requests import cut_at_joints
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client
 from parser_service.serving.preparing import WorldLanguage, require_utterance
-
-_ENDS = re.compile(r"[.;!?]\s+|\n+")  # of a command that others follow in one utterance
-_SIGNS = " .;!?\n"  # around a command
-_NUMBER = re.compile(r"(?<!\S)\(?([1-9])[.)]\s")  # of an item of a list
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +55,7 @@ class JointAnswer:
 
     @property
     def spoken(self) -> str:
-        return spoken(self.plan.plan)
+        return self.plan.spoken
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, as REST answers them (docs/reference/recipes.md)."""
@@ -73,25 +67,14 @@ class JointAnswer:
 
 
 def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
-    """Return the commands of one utterance: its sentences, its lines, and what semicolons or numbers tell apart.
-
-    A piece that the parser does not understand as one command is cut where it understands the pieces
-    (``language.requests.cut_at_joints``).
+    """Return the commands of one utterance, as what answers in the world cuts it.
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
         ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
-    sentences = _items(utterance) or _ENDS.split(utterance)
-    sentences = [each.strip(_SIGNS) for each in sentences if each.strip(_SIGNS)]
-    _require_few(sentences)
-
-    def judge(pieces: Sequence[str]) -> list[float | None]:
-        lines = "\n".join(json.dumps({"utterance": each}) for each in pieces)
-        answers = client().parse_lines(world.name, lines.encode(), beam=1, run=run)
-        return [_score_of(json.loads(each)) for each in answers]
-
-    commands = tuple(each.text for said in sentences for each in cut_at_joints(said, judge))
+    several = client().parse(world.name, utterance, beam=1, run=run)["several"]
+    commands = tuple(each["utterance"] for each in several) or (utterance,)
     _require_few(commands)
     return commands
 
@@ -114,50 +97,44 @@ def plan_together(
     _require_few(texts)
     language = WorldLanguage.of(world)
     ask = client()
-    commands = tuple(
-        _understood(ask.parse(world.name, text, run=run), text, language) for text in texts
-    )
+    commands = tuple(understood(ask.parse(world.name, text, run=run), language) for text in texts)
     plans = [each.task_plan for each in commands]
-    return JointAnswer(commands, join(plans, language.recipes, distances))
+    return JointAnswer(commands, join(plans, language.recipes, distances, texts))
 
 
-def _items(utterance: str) -> list[str]:
-    """Return the items of a numbered list, ``1. … 2. …``; none where an utterance is no such list."""
-    numbers = list(_NUMBER.finditer(utterance))
-    is_list = [int(each[1]) for each in numbers] == list(range(1, len(numbers) + 1))
-    if not numbers or not is_list or utterance[: numbers[0].start()].strip():
-        return []
-    ends = [*(each.start() for each in numbers[1:]), len(utterance)]
-    return [utterance[each.end() : end] for each, end in zip(numbers, ends, strict=True)]
-
-
-def _score_of(answer: Mapping[str, Any]) -> float | None:
-    """Return the score of the best candidate; None where there is none to act on."""
-    best = next(iter(answer.get("candidates", ())), None)
-    return None if best is None or answer["is_unknown"] else float(best["score"])
-
-
-def _understood(
-    answer: Mapping[str, Any], utterance: str, language: WorldLanguage
-) -> UnderstoodCommand:
+def understood(answer: Mapping[str, Any], language: WorldLanguage) -> UnderstoodCommand:
+    """Return a command from the JSON of its answer."""
     best = next(iter(answer["candidates"]), None)
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
     doubts: list[PlanProblem] = []
+    slots: list[Slot] = []
     if best is not None and not is_unknown:
         form = read_form(best["grounded"])
-        # Of which of several entities is meant; what else is wrong follows from the form.
+        # Of which of several entities is meant; what else is wrong follows from the form and its open slots.
         doubts = [
             PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
             for each in best["plan"]["problems"]
-            if each["code"] == Trouble.AMBIGUOUS
+            if each["code"] == Trouble.AMBIGUOUS and not each["step"]
+        ]
+        slots = [
+            Slot(
+                tuple(each["path"]),
+                each["token"],
+                each["entity_class"],
+                tuple(each["choices"]),
+                each["is_named"],
+                phrases=tuple(each["phrases"]),
+            )
+            for each in best["open_slots"]
+            if each["likely"] is None
         ]
     return UnderstoodCommand(
-        utterance,
+        answer["utterance"],
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language),
+        task_plan_of(form, doubts, language, slots=slots),
     )
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from annotations.language.decoding import decode
 from annotations.language.errors import Refusal
+from parser_service.serving.answerer import Answerer
 from parser_service.serving.lines import LineAnswer, answer_some, read_object, utterance_in
 from parser_service.serving.preparing import require_utterance
-from parser_service.serving.shelf import ServedParser
 
 AT_ONCE = 65_536  # bytes that are read where so many are there
 MOST_OF_A_LINE = 1_000_000  # bytes that are kept; a longer line is refused in any case
@@ -29,16 +29,16 @@ def require_utf8(path: Path) -> None:
 
 
 def answer_file(
-    service: ServedParser, file: io.BufferedReader, beam: int
+    answerer: Answerer, file: io.BufferedReader, beam: int
 ) -> Iterator[list[LineAnswer]]:
     """Yield the answers to the lines of ``file`` in their order, as many at a time as the parser reads together.
 
     What has arrived of a pipe is answered without waiting for more. A blank line has no candidates.
     """
-    together = service.parser.lines_together
+    together = answerer.lines_together
     for lines in arriving_lines(file):
         for at in range(0, len(lines), together):
-            yield answer_some(service, lines[at : at + together], beam, read_line)
+            yield answer_some(answerer, lines[at : at + together], beam, read_line)
 
 
 def arriving_lines(file: io.BufferedReader) -> Iterator[list[tuple[int, bytes]]]:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.errors import Refusal
+from parser_service.serving.answerer import Answerer, NotServed, PartAnswer
 from parser_service.serving.parse_answers import as_json
 from parser_service.serving.preparing import numbered_lines, require_utterance
-from parser_service.serving.shelf import AskedUtterance, NotServed, ServedParser
 
 logger = logging.getLogger(__name__)
 
@@ -27,19 +27,19 @@ class LineAnswer:
     fault: str = ""
 
 
-def answer_lines(service: ServedParser, body: bytes, beam: int) -> Iterator[list[str]]:
+def answer_lines(answerer: Answerer, body: bytes, beam: int) -> Iterator[list[str]]:
     """Yield the answers to JSON lines as JSON, some at a time. What is wrong with a line is said in its place."""
     numbered = numbered_lines(body)
-    together = service.parser.lines_together
+    together = answerer.lines_together
     for at in range(0, len(numbered), together):
         # One thread does both. A second one that parsed the next lines meanwhile would have to wait for
         # the interpreter's lock after each operation of the network, for longer than writing takes.
-        answers = answer_some(service, numbered[at : at + together], beam, _read_json_line)
+        answers = answer_some(answerer, numbered[at : at + together], beam, _read_json_line)
         yield [each.json or _refuse_line(each) for each in answers]
 
 
 def answer_some(
-    service: ServedParser,
+    answerer: Answerer,
     lines: Sequence[tuple[int, bytes]],
     beam: int,
     read: Callable[[bytes], str],
@@ -58,28 +58,28 @@ def answer_some(
         except Refusal as error:
             faults[number] = error.message
     spoken = {number: utterance for number, utterance in utterances.items() if utterance}
-    answers = dict.fromkeys(utterances, service.heard_nothing())
+    answers = dict.fromkeys(utterances, answerer.heard_nothing())
     try:
-        asked = service.ask(list(spoken.values()), beam) if spoken else []
+        asked = answerer.ask(list(spoken.values()), beam) if spoken else []
         answers |= zip(spoken, asked, strict=True)
     except NotServed as error:
         faults |= dict.fromkeys(spoken, error.message)
     except Exception:
-        logger.exception("A batch for %s", service.world)
+        logger.exception("A batch for %s", answerer.world)
         faults |= dict.fromkeys(spoken, FAILED)
     return [
         LineAnswer(number, fault=faults[number])
         if number in faults
-        else _write(service, number, answers[number])
+        else _write(answerer, number, answers[number])
         for number, _ in lines
     ]
 
 
-def _write(service: ServedParser, number: int, answer: AskedUtterance) -> LineAnswer:
+def _write(answerer: Answerer, number: int, answer: PartAnswer) -> LineAnswer:
     try:
-        return LineAnswer(number, service.write(answer))
+        return LineAnswer(number, answerer.write(answer))
     except Exception:
-        logger.exception("Line %s of a batch for %s", number, service.world)
+        logger.exception("Line %s of a batch for %s", number, answerer.world)
         return LineAnswer(number, fault=FAILED)
 
 

@@ -27,13 +27,10 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, PlanProblem, doubts_about, make_plan
+from annotations.language.plans import Lookup, PlanProblem, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, apply_recipes, spoken
-from annotations.models import World
-from parser_service.models import TrainingRun
-from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
-from parser_service.serving.loading import load_parser
+from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.preparing import WorldLanguage
 
 LEAST_SCORE = -1e300  # in place of −∞, which JSON cannot say
@@ -129,20 +126,6 @@ class ParsedUtterance:
             "warnings": list(self.warnings),
             "candidates": [answer.as_json() for answer in self.answers],
         }
-
-
-def parse(run: TrainingRun, utterance: str, beam_width: int = 5) -> ParsedUtterance:
-    """Return the answers of ``run`` to ``utterance``, computed in this process. Raises Refusal where it
-    cannot answer."""
-    return ask(load_parser(run).hesitant(), run.world, utterance, beam_width)
-
-
-def ask(parser: Parser, world: World, utterance: str, beam_width: int) -> ParsedUtterance:
-    """Return the answers of ``parser`` to an utterance in ``world``. Raises Refusal where it cannot answer."""
-    language = WorldLanguage.of(world)
-    heard = language.anonymizer.anonymize(utterance)
-    candidates = parser.predict([utterance], beam_width)[0]
-    return read_answers(heard, utterance, candidates, language, parser.score_kind)
 
 
 def read_answers(
@@ -256,7 +239,7 @@ def answer_with(
         slots=given.slots,
         lookup=lookup,
     )
-    task_plan = task_plan_of(given.form, doubts_about(given.slots), language, lookup)
+    task_plan = task_plan_of(given.form, (), language, lookup, given.slots)
     return ParsedCandidate(
         form=candidate.form,
         score=score_of(candidate),
@@ -280,16 +263,27 @@ def answer_with(
 
 
 def task_plan_of(
-    form: Form, doubts: Sequence[PlanProblem], language: WorldLanguage, lookup: Lookup | None = None
+    form: Form,
+    doubts: Sequence[PlanProblem],
+    language: WorldLanguage,
+    lookup: Lookup | None = None,
+    slots: Sequence[Slot] = (),
 ) -> TaskPlan:
     """Return what the robot of the world does for a form with entities, in its own primitives.
 
     Args:
-        doubts: the problems of entities that are only likely.
+        doubts: the problems of entities that are only likely, where ``slots`` do not have them.
         lookup: finds the entities; that of the language by default.
+        slots: those of the form, so that the plan asks for the open ones as a dialogue does.
     """
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
-    plan = make_plan(form, language.ontology, language.predicates, lookup=lookup or language.lookup)
+    plan = make_plan(
+        form,
+        language.ontology,
+        language.predicates,
+        slots=slots,
+        lookup=lookup or language.lookup,
+    )
     plan = replace(plan, problems=(*doubts, *plan.problems))
     return apply_recipes(plan, language.recipes, language.usual)
 

@@ -6,7 +6,7 @@ import json
 import math
 import select
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from http import HTTPStatus
@@ -54,13 +54,22 @@ class ParserClient:
     secret: str = field(repr=False)
 
     def parse(
-        self, world: str, utterance: str, beam: int = 5, run: int | None = None
+        self,
+        world: str,
+        utterance: str,
+        beam: int = 5,
+        run: int | None = None,
+        parser: str = "",
+        alternatives: Sequence[Mapping[str, Any]] = (),
     ) -> dict[str, Any]:
-        """Return the answer (docs/reference/parse-server.md) of the promoted parser of ``world``, or of ``run``.
+        """Return the answer of ``world`` (docs/reference/parse-server.md), or that of ``run`` or ``parser`` alone.
 
-        Raises ParserRefused where there is no such world, run or promoted parser.
+        Where a recogniser gives ``alternatives``, each with ``utterance`` and ``score``, the best that is understood is
+        answered. Raises ParserRefused where there is no such world or run, or nothing answers there.
         """
-        body = {"utterance": utterance, "beam": beam, "run": run}
+        body: dict[str, Any] = {"utterance": utterance, "beam": beam, "run": run, "parser": parser}
+        if alternatives:
+            body["alternatives"] = list(alternatives)
         with closing(self._connect()) as connection:
             path = f"/api/v1/worlds/{world}/parse/"
             response = self._ask(connection, "POST", path, json.dumps(body).encode())
@@ -73,6 +82,7 @@ class ParserClient:
         lines: bytes,
         beam: int = 5,
         run: int | None = None,
+        parser: str = "",
         most_seconds: float = math.inf,
     ) -> Iterator[bytes]:
         """Ask about JSON lines; return an iterator over the answers, line by line, as they come.
@@ -80,7 +90,8 @@ class ParserClient:
         Raises as ``parse`` does, before it returns. The iterator raises ParserAway where it breaks off; where
         the server dies it may also just end, with fewer answers than there are lines.
         """
-        query = urlencode({"beam": beam} | ({} if run is None else {"run": run}))
+        named = {"run": run, "parser": parser}
+        query = urlencode({"beam": beam} | {name: value for name, value in named.items() if value})
         connection = self._connect()
         try:
             path = f"/api/v1/worlds/{world}/parse/?{query}"

@@ -6,18 +6,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import islice
+from random import Random
 from typing import Self
 
 from annotations.language.errors import LanguageError, Refusal
 from annotations.language.forms import Form
-from annotations.language.grammar import Budget, TooManyCombinations
+from annotations.language.grammar import anonymized
 from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
-from annotations.language.symbols import Symbols
-from annotations.language.templates import TemplateExpander
+from annotations.language.requests import NearCommands, WordUse
+from annotations.language.symbols import Symbols, Text, Wildcard
+from annotations.language.templates import spread_derivations
 from annotations.language.text import has_half_character, normalise
 from annotations.models import World
 from annotations.models.corpus import MOST_CHARACTERS
@@ -25,10 +27,10 @@ from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_o
 from parser_service.robots.action_naming import names_of
 
 MOST_CANDIDATES = 20
+MOST_ALTERNATIVES = 20  # of a recogniser
 # What the grammar tells about which words of an utterance go where:
-MOST_OF_A_TEMPLATE = 40  # commands; more of one template say nothing new
+MOST_OF_A_TEMPLATE = 25  # commands; more of one template say nothing new
 MOST_COMMANDS = 4_000
-STEPS = 200_000  # of the expansion of one template
 REMEMBERED_WORLDS = 8
 
 
@@ -44,21 +46,26 @@ class WorldLanguage:
     action_names: Mapping[str, ActionName]
     recipes: RecipeBook = field(default_factory=default_book)
     usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
+    use: WordUse = field(default_factory=WordUse)  # which words lead where
+    near: NearCommands = field(default_factory=lambda: NearCommands(()))
 
     @classmethod
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
+        evidence, use, near = _learned(world)
         lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
             lookup,
-            evidence_of(world),
+            evidence,
             names_of(world),
             recipe_book_of(world),
             usual_places(ontology, lookup),
+            use,
+            near,
         )
 
 
@@ -101,31 +108,30 @@ def require_beam(beam: object) -> int:
     return beam
 
 
-def evidence_of(world: World) -> Evidence:
-    """Return the evidence of the grammar of ``world``, kept until the grammar changes."""
-    return _evidence(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
+def _learned(world: World) -> tuple[Evidence, WordUse, NearCommands]:
+    """Return what the grammar of ``world`` tells about words and roles, kept until the world changes."""
+    return _learn(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
 
 
 @lru_cache(maxsize=REMEMBERED_WORLDS)
-def _evidence(world: int, revision: int) -> Evidence:
+def _learn(pk: int, revision: int) -> tuple[Evidence, WordUse, NearCommands]:
+    world = World.objects.get(pk=pk)
     try:
-        pairs = list(islice(_derivations(World.objects.get(pk=world)), MOST_COMMANDS))
+        pairs = list(islice(_derivations(world), MOST_COMMANDS))
     except LanguageError:  # a grammar that cannot be read says nothing; its page says why
         pairs = []
-    return Evidence(pairs)
+    classes = ontology_of(world).classes
+    near = NearCommands(_as_command(symbols) for symbols, _ in pairs)
+    return Evidence(pairs), WordUse.of(pairs, predicates_of(world), classes), near
 
 
 def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
-    """Yield some commands of each template with their forms. A template that cannot be expanded has none."""
+    """Yield some commands of each template with their forms."""
     for category in task_categories(world):
-        expander = TemplateExpander(category.grammar, category.lines)
-        for template in category.templates:
-            if template.nonterminal:
-                continue
-            try:
-                some = islice(
-                    expander.derivations(template, budget=Budget(STEPS)), MOST_OF_A_TEMPLATE
-                )
-                yield from [(each.symbols, each.form) for each in some]
-            except (LanguageError, TooManyCombinations):
-                continue
+        drawn = spread_derivations(category, MOST_OF_A_TEMPLATE, Random(0))
+        yield from ((each.symbols, each.form) for each in drawn)
+
+
+def _as_command(symbols: Symbols) -> str:
+    leaves = (each for each in symbols if isinstance(each, Text | Wildcard))
+    return " ".join(word for leaf in leaves for word in anonymized(leaf))

@@ -6,15 +6,14 @@ import logging
 import threading
 import time
 from collections import OrderedDict, defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from http import HTTPStatus
 from typing import Any
 
 from django.db.models import Count, Max, Sum
 
-from annotations.language.errors import Refusal
-from annotations.language.grounding import Anonymized
+from annotations.language.errors import LanguageError, Refusal
+from annotations.language.grounding import HearingReader
 from annotations.models import (
     Editable,
     Entity,
@@ -24,93 +23,47 @@ from annotations.models import (
     Recipe,
     World,
 )
-from parser_service.models import ActionNames, Promotion, TrainingRun
+from parser_service.analysis.sureness import ALLOWED_WRONG
+from parser_service.models import (
+    ActionNames,
+    AnswererEvaluation,
+    Answering,
+    AnsweringOrder,
+    Promotion,
+    TrainingRun,
+)
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.interface import Candidate, Parser
-from parser_service.parsers.registry import entry
+from parser_service.parsers.interface import Parser
+from parser_service.parsers.oracle import GrammarOracle
+from parser_service.parsers.registry import ORACLE, untrained
 from parser_service.serving.answer_writing import AnswerWriter
+from parser_service.serving.answerer import (
+    LINES_TOGETHER,
+    Answerer,
+    LoadedParser,
+    NotServed,
+)
 from parser_service.serving.batching import Batcher
+from parser_service.serving.calibrating import calibrated
 from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
-from parser_service.serving.remote import PATIENCE, SEATS, TOGETHER, RemoteAsker, Unanswered
+from parser_service.serving.remote import PATIENCE, SEATS, TOGETHER, RemoteAsker
 
 logger = logging.getLogger(__name__)
 
-# What was heard, what the parser was given, and its answers.
-AskedUtterance = tuple[Anonymized, str, list[Candidate]]
-LINES_TOGETHER = 32  # of a request of many lines
 AGAIN_AFTER = 30.0  # seconds until a parser that could not be loaded is tried again
-
-
-class NotServed(Refusal):
-    """A request that cannot be answered, with its HTTP status and a sentence."""
-
-    code = "not_served"
-
-    def __init__(self, status: int, sentence: str) -> None:
-        super().__init__(sentence, status=status)
+MOST_UNPROMOTED = (
+    100  # worlds without a promoted run whose oracle is kept, the last that were asked
+)
 
 
 @dataclass(frozen=True, slots=True)
-class LoadedParser:
-    """The parser of a run in memory. ``knowledge`` is what of its world it was loaded with;
-    ``lines_together`` is how many lines of a longer request it is given at once. ``run`` is None for a
-    parser that needs none."""
-
-    run: int | None
-    name: str
-    score_kind: str
-    knowledge: tuple[object, ...]
-    size: int
-    batcher: Batcher | RemoteAsker
-    lines_together: int = LINES_TOGETHER
-
-
-@dataclass(frozen=True, slots=True)
-class ServedParser:
-    """A parser and the writer of its world. They answer a request and do not change meanwhile."""
-
-    world: str
-    parser: LoadedParser
-    writer: AnswerWriter
-    wanted: WantedParser
-
-    def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
-        """Return the answer to each utterance, as JSON. Raises as ``ask``."""
-        return [self.write(each) for each in self.ask(utterances, beam)]
-
-    def ask(self, utterances: Sequence[str], beam: int) -> list[AskedUtterance]:
-        """Return what the parser answers to each utterance, and what was heard. Raises NotServed where the
-        parser asks a server that does not answer in time."""
-        heard = [self.writer.language.anonymizer.anonymize(each) for each in utterances]
-        try:
-            answers = self.parser.batcher.ask(utterances, beam)
-        except Unanswered as error:
-            raise NotServed(503, error.message) from error
-        return list(zip(heard, utterances, answers, strict=True))
-
-    def heard_nothing(self) -> AskedUtterance:
-        """Return what there is to write where nothing was said: no candidate, without asking the parser."""
-        return self.writer.language.anonymizer.anonymize(""), "", []
-
-    def write(self, asked: AskedUtterance) -> str:
-        """Return an answer as JSON, with who gave it."""
-        about = {
-            "world": self.world,
-            "run": self.parser.run,
-            "parser": self.parser.name,
-            "score_kind": self.parser.score_kind,
-        }
-        return self.writer.write(about, *asked)
-
-
-@dataclass(frozen=True, slots=True)
-class WantedParser:
+class WantedAnswerer:
     """A world, the key of its promoted run (None: none), and what changes whenever its words do.
 
     ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
-    of actions, and ``recipes`` for these and the primitives.
+    of actions, and ``recipes`` for these and the primitives; ``measured`` for what was last measured of its answers.
     """
 
     world: int
@@ -119,6 +72,9 @@ class WantedParser:
     revision: int
     names: int = 0
     recipes: tuple[object, ...] = ()
+    order: str = AnsweringOrder.BOTH
+    allowed_wrong: float = ALLOWED_WRONG
+    measured: int = 0
 
     def knowledge(self, protocol: str) -> tuple[object, ...]:
         """Return what a run may know of the world; it is loaded anew where that changes."""
@@ -127,8 +83,8 @@ class WantedParser:
         return self.language if protocol == Protocol.DOMAIN else (*self.language, self.revision)
 
 
-def read_wanted() -> dict[str, WantedParser]:
-    """Return world name → what is wanted there, in eight queries.
+def read_wanted() -> dict[str, WantedAnswerer]:
+    """Return world name → what is wanted there, in ten queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
@@ -137,15 +93,25 @@ def read_wanted() -> dict[str, WantedParser]:
     recipes = _totals((Primitive, "world"), (Recipe, "world"))
     runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
     names = dict(ActionNames.objects.values_list("world", "version"))
+    chosen = {
+        world: (order, allowed)
+        for world, order, allowed in Answering.objects.values_list(
+            "world", "order", "allowed_wrong"
+        )
+    }
+    rated = AnswererEvaluation.objects.order_by().values_list("world")
+    measured = dict(rated.annotate(Max("pk")))
     rows = World.objects.present().values_list("pk", "name", "revision")
     return {
-        name: WantedParser(
+        name: WantedAnswerer(
             key,
             runs.get(key),
             tuple(language[key]),
             revision,
             names.get(key, 0),
             tuple(recipes[key]),
+            *chosen.get(key, (AnsweringOrder.BOTH, ALLOWED_WRONG)),
+            measured.get(key, 0),
         )
         for key, name, revision in rows
     }
@@ -162,11 +128,11 @@ def _totals(*models: tuple[type[Editable], str]) -> dict[int, list[object]]:
 
 
 class Shelf:
-    """Holds parsers and gives each request one of them, whole.
+    """Holds what answers in each world, and gives each request one answerer, whole.
 
     ``update`` loads what was promoted beside what answers, and then changes over; whoever answers with
-    the old one ends with it. Other runs are loaded when they are asked, and take at most ``most_bytes``
-    together.
+    the old one ends with it. The oracle of a world without a promoted run is made when it is first asked.
+    Other runs are loaded when they are asked, and take at most ``most_bytes`` together.
 
     ``patience`` is how many seconds a request waits for a parser that asks a server elsewhere.
     """
@@ -177,12 +143,12 @@ class Shelf:
         self._most_bytes = most_bytes
         self._turn = threading.Lock()
         self._seats = threading.BoundedSemaphore(SEATS)
-        self._loading = threading.Lock()
+        self._loading = threading.RLock()
         self._changed = threading.Condition()
-        self._wanted: dict[str, WantedParser] | None = None
-        self._promoted: dict[str, ServedParser] = {}
-        self._others: OrderedDict[int, ServedParser] = OrderedDict()
-        self._failures: dict[str, tuple[WantedParser, float, str]] = {}
+        self._wanted: dict[str, WantedAnswerer] | None = None
+        self._answerers: OrderedDict[str, Answerer] = OrderedDict()
+        self._others: OrderedDict[int, Answerer] = OrderedDict()
+        self._failures: dict[str, tuple[WantedAnswerer, float, str]] = {}
 
     @property
     def is_ready(self) -> bool:
@@ -191,15 +157,14 @@ class Shelf:
 
     def describe(self) -> list[dict[str, Any]]:
         """Return for each world with a promoted run what answers there, and what went wrong."""
-        wanted = self._wanted or {}
         return [
             {
                 "world": name,
                 "promoted": each.run,
-                "run": self._promoted[name].parser.run if name in self._promoted else None,
+                "run": self._run_in(name),
                 "problem": self._failures[name][2] if name in self._failures else "",
             }
-            for name, each in wanted.items()
+            for name, each in (self._wanted or {}).items()
             if each.run is not None
         ]
 
@@ -208,48 +173,65 @@ class Shelf:
         wanted = read_wanted()
         with self._changed:
             self._wanted = wanted
-            self._promoted = {
-                name: service
-                for name, service in self._promoted.items()
-                if name in wanted and wanted[name].run is not None
-            }
+            for name in [each for each in self._answerers if each not in wanted]:
+                del self._answerers[name]
             self._changed.notify_all()
         for name, each in wanted.items():
-            if each.run is not None and self._is_due(name, each):
+            if (each.run is not None or name in self._answerers) and self._is_due(name, each):
                 self._take(name, each)
-        self.metrics.parsers.set(len(self._promoted) + len(self._others))
+        self.metrics.parsers.set(len(self._answerers) + len(self._others))
 
-    def find(self, world: str, run: int | None, patience: float) -> ServedParser:
-        """Return what answers in ``world``: its promoted parser, or that of ``run``.
+    def find(self, world: str, run: int | None, patience: float, parser: str = "") -> Answerer:
+        """Return what answers in ``world``; with ``run`` the parser of that run alone, with ``parser`` one alone that
+        needs no run.
 
         Waits up to ``patience`` seconds for a parser that is being loaded. Raises NotServed.
         """
         wanted = self._wanted_in(world, patience)
-        service = self._promoted.get(world)
-        if run is not None and (service is None or service.parser.run != run):
+        if run is not None:
             return self._other(world, wanted, run)
-        if service is None and wanted.run is None:
-            raise NotServed(409, _nobody_answers(world, wanted))
-        if service is None:
-            service = self._wait_for(world, patience)
-        return service
+        if wanted.run is not None and world not in self._answerers:
+            self._wait_for(world, patience)
+        answerer = self._answerers.get(world)
+        if answerer is None or (wanted.run is None and answerer.wanted != wanted):
+            answerer = self._take_unpromoted(world, wanted)
+        return self._alone(answerer) if parser else answerer
 
-    def load(self, world: str, run: int | None, untrained: str = "") -> ServedParser:
-        """Return what answers in ``world``, loaded for the caller alone: its promoted parser, that of ``run``,
-        or the parser ``untrained``, which needs no run. Raises Refusal."""
+    def load(
+        self, world: str, run: int | None = None, parser: str = "", order: str | None = None
+    ) -> Answerer:
+        """Return what answers in ``world``, loaded for the caller alone; with ``run`` or ``parser`` that one alone.
+        ``order`` is an ``AnsweringOrder``, that of the world by default. Raises Refusal."""
         wanted = read_wanted().get(world)
         if wanted is None:
             raise Refusal(f"There is no world {world}.", "no_such_world", HTTPStatus.NOT_FOUND)
-        if untrained:
-            row = World.objects.get(pk=wanted.world)
-            parser = make_untrained(untrained, row)
-            loaded = self._hold(parser, knowledge=wanted.knowledge(entry(untrained).protocols[-1]))
-            return ServedParser(world, loaded, AnswerWriter(WorldLanguage.of(row)), wanted)
-        if run is None and wanted.run is None:
-            raise Refusal(_nobody_answers(world, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
-        return self._load(world, wanted, run or wanted.run, None)
+        if run is not None:
+            return self._load_run(world, wanted, run, None)
+        if parser:
+            wanted = replace(wanted, run=None, order=AnsweringOrder.ORACLE)
+        elif order:
+            wanted = replace(wanted, order=order)
+        return self._load(world, wanted, None)
 
-    def _wanted_in(self, world: str, patience: float) -> WantedParser:
+    def _alone(self, answerer: Answerer) -> Answerer:
+        """Return the oracle of a world alone. Raises NotServed where the world has no templates."""
+        oracle = answerer.oracle
+        if oracle is None:
+            with self._loading:
+                world = _world(answerer.world, answerer.wanted)
+                oracle = self._oracle(world, answerer.wanted, None)
+        if oracle is None:
+            sentence = (
+                f"{answerer.world} has no templates, so its grammar oracle understands nothing."
+            )
+            raise NotServed(409, f"{sentence} Write templates first.")
+        return replace(answerer, oracle=oracle, learned=None, problem="")
+
+    def _run_in(self, world: str) -> int | None:
+        answerer = self._answerers.get(world)
+        return answerer.learned.run if answerer and answerer.learned else None
+
+    def _wanted_in(self, world: str, patience: float) -> WantedAnswerer:
         with self._changed:
             self._changed.wait_for(lambda: self._wanted is not None, patience)
         if self._wanted is None:
@@ -260,32 +242,35 @@ class Shelf:
             raise NotServed(404, f"There is no world {world}.")
         return self._wanted[world]
 
-    def _wait_for(self, world: str, patience: float) -> ServedParser:
+    def _wait_for(self, world: str, patience: float) -> None:
+        """Wait for the promoted run of a world. Raises NotServed where it has not come by then."""
         with self._changed:
-            self._changed.wait_for(
-                lambda: world in self._promoted or not self._is_coming(world), patience
+            has_come = self._changed.wait_for(lambda: not self._is_coming(world), patience)
+        if not has_come:
+            raise NotServed(
+                503, f"The promoted parser of {world} is not there. It is being loaded."
             )
-        if service := self._promoted.get(world):
-            return service
-        problem = self._failures[world][2] if world in self._failures else "It is being loaded."
-        raise NotServed(503, f"The promoted parser of {world} is not there. {problem}")
 
     def _is_coming(self, world: str) -> bool:
         is_wanted = bool(self._wanted and world in self._wanted and self._wanted[world].run)
-        return is_wanted and world not in self._promoted and world not in self._failures
+        return is_wanted and world not in self._answerers and world not in self._failures
 
-    def _is_due(self, name: str, wanted: WantedParser) -> bool:
-        service = self._promoted.get(name)
-        if service is not None and service.wanted == wanted:
+    def _is_due(self, name: str, wanted: WantedAnswerer) -> bool:
+        answerer = self._answerers.get(name)
+        if answerer is not None and answerer.wanted == wanted and not answerer.problem:
             return False
         failed = self._failures.get(name)
         return failed is None or failed[0] != wanted or time.monotonic() - failed[1] > AGAIN_AFTER
 
-    def _take(self, name: str, wanted: WantedParser) -> None:
+    def _take(self, name: str, wanted: WantedAnswerer) -> None:
         """Let the promoted run answer, or keep what answers and remember why."""
+        before = self._answerers.get(name)
         try:
-            service = self._load(name, wanted, wanted.run, self._promoted.get(name))
+            answerer = self._load(name, wanted, before)
         except Exception as error:
+            if wanted.run is None:  # nobody waits for it; whoever asks next hears why
+                self._answerers.pop(name, None)
+                return
             logger.warning(
                 "%s keeps its parser: run %s: %s",
                 name,
@@ -299,75 +284,141 @@ class Shelf:
                 self._failures[name] = wanted, time.monotonic(), problem
                 self._changed.notify_all()
             return
+        run = self._run_in(name)
         with self._changed:
-            before = self._promoted.get(name)
-            self._promoted = {**self._promoted, name: service}
+            self._answerers[name] = answerer
             self._failures.pop(name, None)
             self._changed.notify_all()
-        if before is None or before.parser.run != service.parser.run:
+        if answerer.learned is not None and answerer.learned.run != run:
             self.metrics.changes.labels(world=name).inc()
-            logger.info("Run %s (%s) answers in %s.", wanted.run, service.parser.name, name)
+            logger.info("Run %s (%s) answers in %s.", wanted.run, answerer.learned.name, name)
 
-    def _other(self, world: str, wanted: WantedParser, run: int) -> ServedParser:
-        """Return a run that is not the promoted one, loading it where it is not there."""
+    def _take_unpromoted(self, name: str, wanted: WantedAnswerer) -> Answerer:
+        """Return what answers in a world of which no run is there: the oracle alone. Raises NotServed."""
+        failed = self._failures.get(name)
         with self._loading:
-            held = self._others.get(run)
-            if held is None or held.world != world or held.wanted.language != wanted.language:
+            try:
+                without_run = replace(wanted, run=None)
+                answerer = self._load(name, without_run, self._answerers.get(name))
+            except Refusal as error:
+                problem = failed[2] if failed else error.message
+                raise NotServed(503 if failed else 409, problem) from error
+            if failed:
+                answerer = replace(answerer, problem=failed[2])
+            self._answerers[name] = answerer
+            self._answerers.move_to_end(name)
+            unpromoted = [each for each, held in self._answerers.items() if held.wanted.run is None]
+            for each in unpromoted[:-MOST_UNPROMOTED]:
+                del self._answerers[each]
+            return answerer
+
+    def _other(self, world: str, wanted: WantedAnswerer, run: int) -> Answerer:
+        """Return a run alone, loading it where it is not there."""
+        held = self._answerers.get(world)
+        if held is not None and held.learned is not None and held.learned.run == run:
+            return replace(held, oracle=None, problem="")
+        with self._loading:
+            other = self._others.get(run)
+            if other is None or other.world != world or other.wanted.language != wanted.language:
                 try:
-                    held = self._load(
-                        world, wanted, run, held if held and held.world == world else None
+                    other = self._load_run(
+                        world, wanted, run, other if other and other.world == world else None
                     )
                 except Refusal as error:
                     raise NotServed(409, error.message) from error
-                self._make_room(held)
-            self._others[run] = held
+                self._make_room(other)
+            self._others[run] = other
             self._others.move_to_end(run)
-            return held
+            return other
 
-    def _make_room(self, service: ServedParser) -> None:
+    def _make_room(self, answerer: Answerer) -> None:
         """Forget the runs that were not asked for the longest time. Raises NotServed for one too large."""
-        if service.parser.size > self._most_bytes:
+        run, size = answerer.run, answerer.size
+        if size > self._most_bytes:
             raise NotServed(
                 409,
-                f"The parser of run {service.parser.run} takes {service.parser.size / 1e6:,.0f} MB, and "
+                f"The parser of run {run} takes {size / 1e6:,.0f} MB, and "
                 f"runs that are not promoted may take {self._most_bytes / 1e6:,.0f} MB here "
                 "(PARSER_MEMORY_MB).",
             )
-        used = service.parser.size + sum(
-            each.parser.size for key, each in self._others.items() if key != service.parser.run
-        )
+        used = size + sum(each.size for key, each in self._others.items() if key != run)
         while used > self._most_bytes:
             key, oldest = next(iter(self._others.items()))
             del self._others[key]
-            used -= oldest.parser.size if key != service.parser.run else 0
+            used -= oldest.size if key != run else 0
 
-    def _load(
-        self, name: str, wanted: WantedParser, run: int | None, held: ServedParser | None
-    ) -> ServedParser:
-        """Load a run of a world with its language; what ``held`` has already is taken from there.
+    def _load(self, name: str, wanted: WantedAnswerer, held: Answerer | None) -> Answerer:
+        """Load the parts of a world; what ``held`` has already is taken from there. Raises Refusal without any."""
+        world = _world(name, wanted)
+        writer = self._writer(world, wanted, held)
+        learned = None
+        if wanted.run is not None and wanted.order != AnsweringOrder.ORACLE:
+            learned = self._learned(name, wanted, wanted.run, held.learned if held else None)
+        oracle = None
+        if wanted.order != AnsweringOrder.LEARNED or learned is None:
+            oracle = self._oracle(world, wanted, held.oracle if held else None)
+        if oracle is None and learned is None:
+            raise Refusal(_nobody_answers(name, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
+        run = learned.run if learned else None
+        sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong)
+        reader = _reader(writer, oracle)
+        return Answerer(name, writer, reader, oracle, learned, sureness, wanted=wanted)
 
-        Raises Refusal where there is no such run or no parser of it.
-        """
+    def _load_run(
+        self, name: str, wanted: WantedAnswerer, run: int, held: Answerer | None
+    ) -> Answerer:
+        """Load a run alone. Raises Refusal where there is no such run or no parser of it."""
+        learned = self._learned(name, wanted, run, held.learned if held else None, any_parser=True)
+        world = _world(name, wanted)
+        writer = self._writer(world, wanted, held)
+        sureness = calibrated(world, run, AnsweringOrder.LEARNED, wanted.allowed_wrong)
+        reader = _reader(writer, None)
+        return Answerer(name, writer, reader, None, learned, sureness, wanted=wanted)
+
+    def _writer(self, world: World, wanted: WantedAnswerer, held: Answerer | None) -> AnswerWriter:
+        if held is not None and _words(held.wanted) == _words(wanted):
+            return held.writer
+        return AnswerWriter(WorldLanguage.of(world))
+
+    def _oracle(
+        self, world: World, wanted: WantedAnswerer, held: LoadedParser | None
+    ) -> LoadedParser | None:
+        """Return the oracle of a world as it is now; None where there are no templates that can be read."""
+        knowledge = wanted.knowledge(Protocol.GRAMMAR)
+        if held is not None and held.knowledge == knowledge:
+            return held
+        try:
+            return self._hold(make_untrained(ORACLE, world), knowledge)
+        except LanguageError as error:
+            logger.warning("The oracle of %s cannot read its grammar: %s", world.name, error)
+        except Refusal:  # there is no template
+            pass
+        return None
+
+    def _learned(
+        self,
+        name: str,
+        wanted: WantedAnswerer,
+        run: int,
+        held: LoadedParser | None,
+        any_parser: bool = False,
+    ) -> LoadedParser | None:
+        """Load the parser of a run; None for one that learns nothing, such as an oracle of another day, unless
+        ``any_parser`` is asked for."""
         of_world = TrainingRun.objects.select_related("world").filter(world=wanted.world)
-        row = None if run is None else of_world.filter(pk=run).first()
+        row = of_world.filter(pk=run).first()
         if row is None:
             raise Refusal(f"There is no run {run} in {name}.", "no_such_run", HTTPStatus.CONFLICT)
-        if held is not None and _words(held.wanted) == _words(wanted):
-            writer = held.writer
-        else:
-            writer = AnswerWriter(WorldLanguage.of(row.world))
+        if row.parser in untrained() and not any_parser:
+            return None
         knowledge = wanted.knowledge(row.protocol)
-        if held is not None and (held.parser.run, held.parser.knowledge) == (row.pk, knowledge):
-            return ServedParser(name, held.parser, writer, wanted)
-        parser = load_anew(row).hesitant()
-        loaded = self._hold(parser, knowledge, row.pk, size_of(row))
-        return ServedParser(name, loaded, writer, wanted)
+        if held is not None and (held.run, held.knowledge) == (row.pk, knowledge):
+            return held
+        return self._hold(load_anew(row).hesitant(), knowledge, row.pk, size_of(row))
 
     def _hold(
         self, parser: Parser, knowledge: tuple[object, ...], run: int | None = None, size: int = 0
     ) -> LoadedParser:
-        # What needs no run looks at each line alone, so that several together would only come later.
-        together = 1 if run is None else LINES_TOGETHER
         return LoadedParser(
             run=run,
             name=parser.name,
@@ -377,21 +428,37 @@ class Shelf:
             batcher=RemoteAsker(parser.predict, self._seats, self._patience)
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
-            lines_together=TOGETHER if parser.asks_a_server else together,
+            lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
+            parser=parser,
         )
 
 
-def _words(wanted: WantedParser) -> tuple[object, ...]:
+def _reader(writer: AnswerWriter, oracle: LoadedParser | None) -> HearingReader:
+    """Return what hears utterances without their noise, by the words of the oracle where there is one."""
+    if oracle is not None and isinstance(oracle.parser, GrammarOracle):
+        return oracle.parser.reader
+    return HearingReader(writer.language.ontology, writer.language.use.vocabulary)
+
+
+def _world(name: str, wanted: WantedAnswerer) -> World:
+    """Return the row of a world. Raises Refusal where it is gone since it was looked for."""
+    world = World.objects.present().filter(pk=wanted.world).first()
+    if world is None:
+        raise Refusal(f"There is no world {name}.", "no_such_world", HTTPStatus.NOT_FOUND)
+    return world
+
+
+def _words(wanted: WantedAnswerer) -> tuple[object, ...]:
     """Return what changes when the language of the world has to be read anew."""
     return wanted.language, wanted.revision, wanted.names, wanted.recipes
 
 
-def _nobody_answers(world: str, wanted: WantedParser) -> str:
-    """Return why no parser answers in a world, and what there is to do."""
-    sentence = f"No run of {world} has been promoted yet, so no parser answers there."
+def _nobody_answers(world: str, wanted: WantedAnswerer) -> str:
+    """Return why nothing answers in a world, and what there is to do."""
+    sentence = f"{world} has no templates, and no run of it has been promoted yet, so nothing answers there."
     if TrainingRun.objects.active().filter(world=wanted.world).exists():
         return (
             f"{sentence} Parsers are being trained there; the first that is right on paraphrases will "
             "answer by itself. Ask again later."
         )
-    return f"{sentence} Train one on paraphrases, or promote one."
+    return f"{sentence} Write templates, train a parser on paraphrases, or promote one."

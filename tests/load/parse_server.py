@@ -16,6 +16,7 @@ What was trained into ``--folder`` is kept there for the next time.
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import signal
 import sys
@@ -71,11 +72,14 @@ def forms_of(candidates: list[dict[str, Any]]) -> list[str]:
 
 def expected_answers(runs: list[Any], utterances: list[str]) -> dict[tuple[int, str], list[str]]:
     """Return what each run answers to each utterance by itself."""
-    from parser_service.serving.parse_answers import parse
+    from parser_service.serving.metrics import Metrics
+    from parser_service.serving.shelf import Shelf
 
+    shelf = Shelf(0, Metrics())
+    answerers = {run.pk: shelf.load(WORLD, run.pk) for run in runs}
     return {
-        (run.pk, text): forms_of(parse(run, text, BEAM).as_json()["candidates"])
-        for run in runs
+        (key, text): forms_of(json.loads(answerer.parse([text], BEAM)[0])["candidates"])
+        for key, answerer in answerers.items()
         for text in utterances
     }
 

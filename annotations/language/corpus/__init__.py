@@ -18,6 +18,7 @@ from annotations.language.corpus.leakage import (
     near_duplicates,
     shared,
 )
+from annotations.language.corpus.overlap import FormOverlap, Overlap, overlap_of, together
 from annotations.language.corpus.splitting import (
     DEFAULT_PROPORTIONS,
     KNOWN,
@@ -62,10 +63,12 @@ __all__ = [
     "Criterion",
     "CrowdRewrite",
     "CrowdTable",
+    "FormOverlap",
     "FrozenExample",
     "GroundedTriple",
     "Leak",
     "NearDuplicates",
+    "Overlap",
     "Part",
     "Record",
     "RecordFile",
@@ -81,12 +84,14 @@ __all__ = [
     "hold_out_known",
     "is_corpus_path",
     "near_duplicates",
+    "overlap_of",
     "read_crowd_results",
     "read_foreign_pairs",
     "read_pairs",
     "read_triples",
     "shared",
     "split",
+    "together",
     "write_pairs",
     "write_triples",
 ]

@@ -10,6 +10,7 @@ from annotations.language.dialogue.machine import (
     Offer,
     Phase,
     progress,
+    shall_i,
 )
 from annotations.language.dialogue.reactions import Reaction, reaction_of
 
@@ -23,4 +24,5 @@ __all__ = [
     "Reaction",
     "progress",
     "reaction_of",
+    "shall_i",
 ]

@@ -292,8 +292,7 @@ def state_with_prompt(
     elif slot is None:
         named = dialogue.ontology.class_of_text
         said = gloss(state.form, dialogue.predicates, classes, named)
-        words = re.sub(r"\bme\b", "you", said)
-        prompt = f"Did you mean: {said}?" if state.phase is Phase.CHECKING else f"Shall I {words}?"
+        prompt = f"Did you mean: {said}?" if state.phase is Phase.CHECKING else shall_i(said)
     elif state.phase is Phase.LEARNING:
         prompt = (
             f"I do not know any {noun_for(slot, classes)} called “{state.word}”. Shall I learn it?"
@@ -304,6 +303,12 @@ def state_with_prompt(
         if slot.phrases and slot.entity_class and not slot.is_named:
             prompt = f"{prompt} Name one that I know, or say “new”."
     return replace(state, prompt=sorry + prompt)
+
+
+def shall_i(said: str) -> str:
+    """Return the question whether to do what the English of a form says."""
+    words = re.sub(r"\bme\b", "you", said)
+    return f"Shall I {words}?"
 
 
 def progress(state: DialogueState) -> tuple[int, int, int, int]:

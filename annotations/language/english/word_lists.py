@@ -211,8 +211,74 @@ _other_requests = WordFile("other_requests")
 FORBIDDING_PHRASES = _other_requests.words("forbidding")
 CONDITIONAL_PHRASES = _other_requests.words("conditions")
 TAKING_BACK_PHRASES = _other_requests.words("taking_back")
-ASKING_PHRASES = _other_requests.words("asking")
 POLITE_BEFORE_IF = _other_requests.words("polite_before_if")
+POLITE_AFTER_IF = _other_requests.words("polite_after_if")
+EXCUSING_PHRASES = _other_requests.words("excusing")
+EXCUSED_PHRASES = _other_requests.words("excused")
+ORDERING_PHRASES = _other_requests.words("ordering")
+SUBJECT_WORDS = _other_requests.words("subjects")
+SEVERAL_PHRASES = _other_requests.words("several")
+COUNTING_PHRASES = _other_requests.words("counting")
+
+# Words that nobody has to look up: those of the lists, which say little by themselves.
+ENGLISH_WORDS = frozenset(
+    word
+    for phrases in (
+        *(
+            BOUNDARIES,
+            DETERMINERS,
+            NEGATIONS,
+            PLACE_PREPOSITIONS,
+            CHOOSING_WORDS,
+            CHOICE_FILLERS,
+            VAGUE_WORDS,
+        ),
+        *(
+            PERSON_WORDS,
+            THING_WORDS,
+            NO_COMMAND_WORDS,
+            COURTESY_WORDS,
+            COURTESY_OPENINGS,
+            COURTESY_CLOSINGS,
+        ),
+        *(
+            JOINTS,
+            JOINT_OPENINGS,
+            NUMBERS,
+            FORBIDDING_PHRASES,
+            CONDITIONAL_PHRASES,
+            TAKING_BACK_PHRASES,
+        ),
+        *(
+            POLITE_BEFORE_IF,
+            POLITE_AFTER_IF,
+            EXCUSING_PHRASES,
+            EXCUSED_PHRASES,
+            SEVERAL_PHRASES,
+            YES_WORDS,
+            NO_WORDS,
+        ),
+    )
+    for phrase in phrases
+    for word in re.findall(r"[\w']+", phrase.casefold())
+)
+
+
+_hearing = WordFile("hearing")
+SOUNDS = _hearing.words("sounds")
+FILLERS = _hearing.words("fillers")
+REPAIRS = _hearing.words("repairs")
+HEARD_OPENINGS = _hearing.words("openings")
+HEARD_CLOSINGS = _hearing.words("closings")
+HEARD_ANYWHERE = _hearing.words("anywhere")
+CALLS = _hearing.words("calls")
+CONTRACTIONS = _hearing.texts_by_name("contractions")
+OPEN_WORDS = frozenset(_hearing.words("open_words"))
+KEPT_WORDS = frozenset(_hearing.words("kept"))
+POSSESSIVES = frozenset(_hearing.words("possessives"))
+ALIKE = _hearing.groups("alike")
+AGREEING = _hearing.groups("agreeing")
+SYNONYMS = _hearing.groups("synonyms")
 
 
 @cache

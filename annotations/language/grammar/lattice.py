@@ -19,6 +19,7 @@ class Arc:
     """Reads what is between two places as ``word``. Of two paths the one with the lower ``cost`` is preferred.
 
     ``number`` tells the arcs of one lattice apart that stand for something, such as an entity; -1 for a word.
+    ``changes`` are numbers, too: of what the arc reads otherwise than it was said.
     """
 
     start: int
@@ -26,6 +27,7 @@ class Arc:
     word: str
     cost: int = 0
     number: int = -1
+    changes: tuple[int, ...] = ()
 
 
 class Lattice:

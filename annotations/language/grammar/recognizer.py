@@ -197,7 +197,9 @@ class Chart:
 
 
 class Recognizer:
-    """Accepts exactly the anonymized commands of a grammar.
+    """Accepts exactly the anonymized commands of a grammar, or what another nonterminal than its root becomes.
+
+    A command has words; what another nonterminal becomes may have none.
 
     Raises:
         LanguageError: the grammar has a cycle.
@@ -206,6 +208,7 @@ class Recognizer:
     def __init__(self, grammar: Grammar, root: str = ROOT) -> None:
         self._book = RuleBook(grammar.expander)
         self._root = self._book.number(Nonterminal(root))
+        self._accepts_nothing = root != ROOT and self._book.rules[self._root].can_be_empty
 
     def accepts(self, command: str, budget: Budget | None = None) -> bool:
         """Return whether the grammar derives the command, given as words between spaces.
@@ -215,6 +218,6 @@ class Recognizer:
         """
         words = tuple(command.split())
         if not words:
-            return False
+            return self._accepts_nothing
         chart = Chart(self._book, Lattice.of_words(words), budget)
         return len(words) in chart.ends(self._root, 0)

@@ -17,17 +17,30 @@ from annotations.language.grounding.deanonymizer import (
 )
 from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
+from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
     choices_of,
+    is_asked_plainly,
     named_entities,
     noun_for,
     open_slots_as_json,
     question_for,
 )
-from annotations.language.grounding.role_evidence import Evidence
-from annotations.language.grounding.roles import SlotPath
-from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
-from annotations.language.grounding.utterance_mentions import UtteranceMentions
+from annotations.language.grounding.role_evidence import Evidence, as_pair
+from annotations.language.grounding.roles import (
+    SlotPath,
+    class_of,
+    context_of,
+    role_of,
+    tokens_of,
+    words_of,
+)
+from annotations.language.grounding.utterance_lattice import (
+    HeardChange,
+    HeardLattice,
+    UtteranceReader,
+)
+from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
     "QUESTION_WORD",
@@ -37,24 +50,35 @@ __all__ = [
     "Evidence",
     "FormSlots",
     "Grounded",
+    "HeardChange",
     "HeardLattice",
+    "HeardText",
+    "HearingReader",
     "Slot",
     "SlotPath",
     "Span",
     "UtteranceMentions",
     "UtteranceReader",
+    "are_alike",
+    "as_pair",
     "choices_of",
+    "class_of",
+    "context_of",
     "deanonymize",
     "fill_all",
     "filled",
     "ground",
     "ground_like",
     "ground_text",
+    "is_asked_plainly",
     "may_fill",
     "named_entities",
     "noun_for",
     "open_slots_as_json",
     "question_for",
     "resolve_slots",
+    "role_of",
+    "tokens_of",
     "with_values",
+    "words_of",
 ]

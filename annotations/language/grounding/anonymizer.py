@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from annotations.language.english import spellings
+from annotations.language.english import looks_plural, spellings
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.symbols import EntityClasses
 
@@ -23,6 +23,7 @@ class Likeness(IntEnum):
     EXACT = 0
     ALIAS = 1
     INFLECTED = 2
+    MEMBER = 3  # the name of a category, for one of its objects
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +143,22 @@ def readings_of(entity: Entity, classes: EntityClasses) -> Iterator[tuple[str, R
         yield QUESTION_WORD, Reading(Likeness.EXACT, entity_class, QUESTION_WORD, entity)
     for alias in entity.aliases:
         yield alias, Reading(Likeness.ALIAS, entity_class, text, entity)
-    singular = entity.attribute("singular") if entity_class == "category" else None
-    if singular and singular != text:
-        yield singular, Reading(Likeness.EXACT, "object", singular, entity)
-        return
+    if entity_class == "category":
+        singular = entity.attribute("singular") or text
+        if singular != text:
+            yield singular, Reading(Likeness.EXACT, "object", singular, entity)
+            return
+        # A class whose singular nobody has said, or is its plural: "a food" is one of its objects, too.
+        for noun in _singulars_of(text):
+            yield noun, Reading(Likeness.MEMBER, "object", noun, entity)
     for noun in (text, *entity.aliases) if classes.has_plurals(entity_class) else ():
         for spelling in spellings(noun):
             yield spelling, Reading(Likeness.INFLECTED, entity_class, text, entity)
+
+
+def _singulars_of(category: str) -> Iterator[str]:
+    """Yield what one object of a category may be called: itself, or what it is the likely plural of."""
+    if not looks_plural(category):
+        yield category
+    else:
+        yield from (each for each in spellings(category) if len(each) < len(category))

@@ -45,11 +45,21 @@ def question_for(
         asked = f"{what} do you mean by {_or(tuple(f'“{phrase}”' for phrase in slot.phrases))}?"
     elif asked is None:
         asked = ask_for(form, slot.path, slot.entity_class, predicates, classes, named)
+    offered = _offered(slot)
+    return f"{asked} {offered[:1].upper()}{offered[1:]}?" if offered else asked
+
+
+def is_asked_plainly(slot: Slot) -> bool:
+    """Return whether the question for a slot is what ``ask_for`` says, whatever the utterance was."""
+    return not (slot.phrases and not slot.is_named) and not _offered(slot)
+
+
+def _offered(slot: Slot) -> str:
+    """Return what a question lists to choose from; empty where that is nothing or too much."""
     choices = choices_of(slot)
     if slot.is_choice:
         choices += tuple(f"“{phrase}”" for phrase in slot.phrases)
-    offered = _or(choices) if slot.is_named or len(choices) <= MOST_OFFERED else ""
-    return f"{asked} {offered[:1].upper()}{offered[1:]}?" if offered else asked
+    return _or(choices) if slot.is_named or len(choices) <= MOST_OFFERED else ""
 
 
 def choices_of(slot: Slot) -> tuple[str, ...]:

@@ -100,19 +100,10 @@ class Evidence:
         return math.log(share / anywhere)
 
     def _learn_derivation(self, symbols: Symbols, form: Form) -> None:
-        """Number the wildcards by their identity and learn from the pair."""
-        numbers: dict[tuple[str, int | None], int] = {}
-        words: list[str] = []
-        for symbol in symbols:
-            if isinstance(symbol, Wildcard) and symbol.entity_class:
-                number = numbers.setdefault(symbol.identity, len(numbers))
-                words.append(f"<{symbol.entity_class}{number}>")
-            elif isinstance(symbol, Wildcard | Text):
-                words += words_of(symbol.token if isinstance(symbol, Wildcard) else symbol.value)
         for path, wildcard in _wildcards(form):
             if not wildcard.obfuscated:
                 self._wildcards[role_of(form, path).exact].add(wildcard)
-        self._learn(words, _number(form, numbers))
+        self._learn(*as_pair(symbols, form))
 
     def _learn(self, words: Sequence[str], form: Form) -> None:
         """Count the contexts of the first mentions by role, and the order of the mentions."""
@@ -131,6 +122,19 @@ class Evidence:
             self._orders[plain, entity_class, len(mentioned)][order] += 1
             if len(mentioned) > 1 and CHOOSING_WORDS.intersection(words):
                 self._with_or.add((plain, entity_class))
+
+
+def as_pair(symbols: Symbols, form: Form) -> tuple[list[str], Form]:
+    """Return the words and the form of a derivation, with tokens that the identities of its wildcards number."""
+    numbers: dict[tuple[str, int | None], int] = {}
+    words: list[str] = []
+    for symbol in symbols:
+        if isinstance(symbol, Wildcard) and symbol.entity_class:
+            number = numbers.setdefault(symbol.identity, len(numbers))
+            words.append(f"<{symbol.entity_class}{number}>")
+        elif isinstance(symbol, Wildcard | Text):
+            words += words_of(symbol.token if isinstance(symbol, Wildcard) else symbol.value)
+    return words, _number(form, numbers)
 
 
 @cache

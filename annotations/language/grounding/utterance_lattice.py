@@ -17,6 +17,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 from annotations.language.english import (
     COURTESY_ANYWHERE,
@@ -54,16 +55,39 @@ DIGITS = "0123456789"
 
 
 @dataclass(frozen=True, slots=True)
+class HeardChange:
+    """What was heard otherwise than it was said, in ``utterance[start:end]``, which is ``said``.
+
+    ``heard`` is empty for what was passed over, ``said`` for what was left out. ``kind`` is one of "filler",
+    "repeated", "repair", "courtesy", "contraction", "article", "joined", "split", "number", "sound", "spelling",
+    "inflection" and "alias".
+    """
+
+    kind: str
+    start: int
+    end: int
+    said: str
+    heard: str
+
+
+@dataclass(frozen=True, slots=True)
 class HeardLattice:
-    """A lattice, and the entities for which its numbered arcs stand.
+    """A lattice, the entities for which its numbered arcs stand, and what its arcs change.
 
     ``tokens`` says which characters of the utterance lie between a place and the next one; it is empty where the
-    lattice has no such places.
+    lattice has no such places. The changes numbered ``always`` are those of every path.
     """
 
     lattice: Lattice
     spans: tuple[Span, ...] = ()
     tokens: tuple[tuple[int, int], ...] = ()
+    changes: tuple[HeardChange, ...] = ()
+    always: tuple[int, ...] = ()
+
+    def heard(self, changes: Sequence[int]) -> tuple[HeardChange, ...]:
+        """Return what a derivation changes, in the order of the utterance."""
+        made = {self.changes[number] for number in (*self.always, *changes)}
+        return tuple(sorted(made, key=lambda each: (each.start, each.end, each.kind, each.heard)))
 
     def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:
         """Return the entity of each arc, None for an arc that stands for none."""
@@ -89,16 +113,16 @@ class UtteranceReader:
         heard = self.anonymizer.anonymize(utterance)
         if heard.spans:
             yield _longest(heard)
-        yield _Everything(self, utterance).heard()
+        yield Everything(self, utterance).heard()
 
     @cached_property
-    def names(self) -> dict[str, tuple[_Name, ...]]:
+    def names(self) -> dict[str, tuple[Name, ...]]:
         """Folded words, joined → the names that they may be."""
-        found: defaultdict[str, list[_Name]] = defaultdict(list)
+        found: defaultdict[str, list[Name]] = defaultdict(list)
         for entity in self._ontology.entities:
             for words, reading in readings_of(entity, self._ontology.classes):
-                if key := "".join(fold(each) for each in _spoken(words)):
-                    found[key].append(_Name(words.casefold(), reading))
+                if key := "".join(fold(each) for each in spoken_words(words)):
+                    found[key].append(Name(words.casefold(), reading))
         return {key: tuple(dict.fromkeys(names))[:MOST_NAMESAKES] for key, names in found.items()}
 
     @cached_property
@@ -117,8 +141,11 @@ class UtteranceReader:
 
 
 def fold(word: str) -> str:
-    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays."""
-    parts = unicodedata.normalize("NFD", word.casefold())
+    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays.
+
+    Full-width letters and ligatures are the letters that they stand for.
+    """
+    parts = unicodedata.normalize("NFKD", word.casefold())
     letters = "".join(each for each in parts if not unicodedata.combining(each))
     return _SIGNS_INSIDE.sub("", letters) or word
 
@@ -128,7 +155,7 @@ def _words(text: str) -> list[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Name:
+class Name:
     """How an entity is called, without its case."""
 
     spelling: str
@@ -136,7 +163,7 @@ class _Name:
 
     def cost(self, said: str) -> int:
         """Return what it costs to hear the name in ``said``."""
-        is_inflected = self.reading.likeness is Likeness.INFLECTED
+        is_inflected = self.reading.likeness >= Likeness.INFLECTED
         return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
 
     def rank(self, said: str) -> tuple[int, Likeness]:
@@ -144,7 +171,7 @@ class _Name:
         return self.cost(said), self.reading.likeness
 
 
-def _tokens(text: str) -> list[tuple[int, int]]:
+def tokens_of(text: str) -> list[tuple[int, int]]:
     """Return where the words, class tokens and signs of a text begin and end.
 
     Vowel signs and accents that are characters of their own belong to their words.
@@ -153,9 +180,9 @@ def _tokens(text: str) -> list[tuple[int, int]]:
     return [match.span() for match in _TOKEN.finditer(marked)]
 
 
-def _spoken(text: str) -> list[str]:
+def spoken_words(text: str) -> list[str]:
     """Return the words of a name, without signs between them."""
-    tokens = (text[start:end] for start, end in _tokens(text))
+    tokens = (text[start:end] for start, end in tokens_of(text))
     return [token for token in tokens if token[0].isalnum()]
 
 
@@ -197,13 +224,22 @@ _DESCRIBED = {
 _REFERENCES = {word: _folded(phrases) for word, phrases in REFERENCES.items()}
 
 
-class _Everything:
+class Skip(NamedTuple):
+    """A range of tokens that may be passed over, what that costs, and the numbers of the changes that it is."""
+
+    start: int
+    stop: int
+    cost: int
+    changes: tuple[int, ...] = ()
+
+
+class Everything:
     """Collects the arcs of the third lattice. Places are between tokens."""
 
     def __init__(self, reader: UtteranceReader, utterance: str) -> None:
         self.reader = reader
         self.utterance = utterance
-        self.tokens = _tokens(utterance)
+        self.tokens = tokens_of(utterance)
         self.texts = [utterance[start:end] for start, end in self.tokens]
         self.folded = [fold(text) for text in self.texts]
         self.spans: list[Span] = []
@@ -212,11 +248,9 @@ class _Everything:
         named = list(self._entity_arcs())
         arcs = [*self._word_arcs(), *named, *self._commas(), *self._references()]
         arcs += self._repetitions(named)
-        return HeardLattice(
-            Lattice(_skipping(arcs, self._skipped(), len(self.tokens)), len(self.tokens)),
-            tuple(self.spans),
-            tuple(self.tokens),
-        )
+        end = len(self.tokens)
+        lattice = Lattice(skipping(arcs, self.skips(), end), end)
+        return HeardLattice(lattice, tuple(self.spans), tuple(self.tokens))
 
     def _is_word(self, place: int) -> bool:
         return self.texts[place][0].isalnum()
@@ -317,7 +351,7 @@ class _Everything:
         first, last = self.tokens[start][0], self.tokens[end - 1][1]
         said = self.utterance[first:last].casefold()
         is_word = self._is_word(end - 1)
-        by_class: defaultdict[str, list[_Name]] = defaultdict(list)
+        by_class: defaultdict[str, list[Name]] = defaultdict(list)
         for name in names:
             # A sign at the end belongs to a name that is written so, and to no other.
             if is_word or name.spelling == said:
@@ -336,12 +370,13 @@ class _Everything:
         places: tuple[int, int],
         characters: tuple[int, int],
         cost: int,
+        changes: tuple[int, ...] = (),
     ) -> Iterator[Arc]:
         """Yield an arc for each value that the words can mean."""
         for value in dict.fromkeys(each.value for each in readings):
             same = [each for each in readings if each.value == value]
             others = tuple(each.entity for each in same[1:])
-            arc = Arc(*places, token, cost, len(self.spans))
+            arc = Arc(*places, token, cost, len(self.spans), changes)
             first = same[0]
             self.spans.append(
                 Span(
@@ -351,6 +386,10 @@ class _Everything:
                 )
             )
             yield arc
+
+    def skips(self) -> list[Skip]:
+        """Return what may be passed over. It costs by its signs and words, so that passing over less is cheaper."""
+        return [Skip(start, stop, SKIPPED * (stop - start)) for start, stop in self._skipped()]
 
     def _skipped(self) -> list[tuple[int, int]]:
         """Return the ranges of tokens that may be passed over, as first and next place."""
@@ -364,6 +403,11 @@ class _Everything:
         # Openings and closings follow one another from the two ends.
         skipped += self._chain(_OPENINGS)
         skipped += self._chain_back(_CLOSINGS)
+        # The number of a list: "1. bring me the tea", "(2) follow Bo".
+        number = next((place for place in range(len(self.texts)) if self._is_word(place)), 0)
+        after = self.texts[number + 1 : number + 2]
+        if after and self.texts[number].isdecimal() and not after[0][0].isalnum():
+            skipped.append((number, number + 1))
         return sorted(set(skipped))
 
     def _places_of(
@@ -403,24 +447,27 @@ class _Everything:
             seen.update(starts)
 
 
-def _skipping(arcs: Sequence[Arc], skipped: Sequence[tuple[int, int]], end: int) -> Iterator[Arc]:
+def skipping(arcs: Sequence[Arc], skips: Sequence[Skip], end: int) -> Iterator[Arc]:
     """Yield the arcs, and for each the arcs that pass over what may be skipped before it, or after it at the end.
 
-    A range counts by its signs and words, so that passing over less is cheaper. At most ``MOST_SKIPPED`` of them
-    are passed over together, which keeps the number of arcs in proportion to the utterance.
+    At most ``MOST_SKIPPED`` tokens are passed over together, which keeps the number of arcs in proportion to the
+    utterance.
     """
-    before: dict[int, dict[int, int]] = {place: {place: 0} for place in range(end + 1)}
-    for start, stop in sorted(skipped, key=lambda each: each[1]):
-        for first, cost in list(before[start].items()):
-            total = cost + SKIPPED * (stop - start)
-            if stop - first > MOST_SKIPPED:
+    before: dict[int, dict[int, tuple[int, tuple[int, ...]]]] = {
+        place: {place: (0, ())} for place in range(end + 1)
+    }
+    for skip in sorted(skips, key=lambda each: each.stop):
+        for first, (cost, changes) in list(before[skip.start].items()):
+            total = cost + skip.cost
+            if skip.stop - first > MOST_SKIPPED:
                 continue
-            if total < before[stop].get(first, total + 1):
-                before[stop][first] = total
+            if first not in before[skip.stop] or total < before[skip.stop][first][0]:
+                before[skip.stop][first] = total, changes + skip.changes
     for arc in arcs:
-        endings = {arc.end: 0}
+        endings: dict[int, tuple[int, tuple[int, ...]]] = {arc.end: (0, ())}
         if end != arc.end and arc.end in before[end]:
             endings[end] = before[end][arc.end]
-        for first, cost in before[arc.start].items():
-            for last, more in endings.items():
-                yield Arc(first, last, arc.word, arc.cost + cost + more, arc.number)
+        for first, (cost, passed) in before[arc.start].items():
+            for last, (more, later) in endings.items():
+                changes = passed + arc.changes + later
+                yield Arc(first, last, arc.word, arc.cost + cost + more, arc.number, changes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.english import KnownWords, folded_words
 from annotations.language.paraphrases.misspelt_names import MisspeltNames
 from annotations.language.paraphrases.model_replies import rewrites_in
 from annotations.language.paraphrases.prompt_entities import entities_in, entities_of
@@ -31,7 +31,6 @@ from annotations.language.paraphrases.submission_flags import (
     rewrite_flags,
 )
 from annotations.language.paraphrases.vocabulary import expected_vocabulary, vocabulary_growth
-from annotations.language.paraphrases.word_folding import folded_words
 
 __all__ = [
     "INSTRUCTIONS",

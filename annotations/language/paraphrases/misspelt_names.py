@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 
 from rapidfuzz.distance import OSA
 
-from annotations.language.paraphrases.known_words import KnownWords
+from annotations.language.english import KnownWords
 
 # A misspelt name differs by one edit, or by two where it is long. Every other name is clearly further away.
 LETTERS_AN_EDIT = 4

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from annotations.language.paraphrases.word_folding import folded_words
+from annotations.language.english import folded_words
 from annotations.language.text import normalise, normalise_line
 
 LONGEST_REPLY = 100_000  # characters that are read of a reply

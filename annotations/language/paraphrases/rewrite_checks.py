@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from annotations.language.corpus import distance
-from annotations.language.english import COURTESY_WORDS, spellings
-from annotations.language.paraphrases.word_folding import folded_words
+from annotations.language.english import COURTESY_WORDS, folded_words, spellings
 
 # Levenshtein distance over the length of the prompt, and Jaccard distance of the words.
 CLOSE_EDITS, CLOSE_WORDS = 0.15, 0.2

@@ -10,9 +10,8 @@ from functools import lru_cache
 from rapidfuzz.distance import Levenshtein
 
 from annotations.language.corpus import distance
-from annotations.language.english import COURTESY_WORDS
+from annotations.language.english import COURTESY_WORDS, folded_words
 from annotations.language.paraphrases.rewrite_checks import Named, lost_entities
-from annotations.language.paraphrases.word_folding import folded_words
 
 ALIKE = 0.9  # normalised Levenshtein similarity from which on two texts count as the same
 LEAST_SECONDS = 2.0  # to read a prompt and to write anything

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from annotations.language.plans.behavior_tree import (
     TAKEN_NAMES,
+    Robust,
     node_name,
     port_name,
     to_behavior_tree,
@@ -32,11 +33,17 @@ from annotations.language.plans.plan import (
     plan_schema,
     plan_schema_text,
 )
-from annotations.language.plans.planning import argument_names, doubts_about, make_plan
+from annotations.language.plans.planning import (
+    NOT_UNDERSTOOD,
+    argument_names,
+    doubts_about,
+    make_plan,
+)
 
 __all__ = [
     "ASK",
     "AT",
+    "NOT_UNDERSTOOD",
     "TAKEN_NAMES",
     "ActionName",
     "Condition",
@@ -50,6 +57,7 @@ __all__ = [
     "PlanOf",
     "PlanProblem",
     "Referred",
+    "Robust",
     "Step",
     "StepResult",
     "Trouble",

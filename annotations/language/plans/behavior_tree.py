@@ -2,8 +2,9 @@
 
 https://www.behaviortree.dev/docs/learn-the-basics/xml_format; what is written here is valid against
 ``behavior_tree.xsd`` beside this module. Nodes are written explicitly (``<Action ID="go" …/>``).
-Entities, texts, numbers and the operator are ports with plain text, descriptions ports with ``json:`` and their JSON
-(the prefix that the library itself uses), results entries of the blackboard: ``{result_1}``.
+Entities, texts, numbers and the operator are ports with plain text, and so is a description of which only the noun or
+the name is said. Other descriptions are ports with ``json:`` and their JSON (the prefix that the library itself uses),
+results entries of the blackboard: ``{result_1}``.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 from xml.etree import ElementTree
 
+from annotations.language.forms import PERSON
 from annotations.language.plans.plan import (
     Described,
     Named,
@@ -29,6 +32,8 @@ from annotations.language.plans.plan import (
 TREE = "Command"
 RESULT = "result"
 OPERATOR = "operator"
+FALLBACK = "step_failed"
+_NAMING = frozenset(("is_a", "name"))  # what gives a thing its noun and a person a name
 _NO_NAME = re.compile(r"[^A-Za-z0-9_]")
 _RESERVED = frozenset(("name", "id", RESULT))
 # The nodes of BehaviorTree.CPP 4.9 and of its predecessors, the tags of its XML, and the name of our tree: an action
@@ -75,8 +80,24 @@ class Steps(Protocol):
     def steps(self) -> Sequence[TreeStep]: ...
 
 
-def to_behavior_tree(plan: Steps) -> str:
-    """Return the plan as XML: a sequence of actions and the ports of each."""
+@dataclass(frozen=True, slots=True)
+class Robust:
+    """How a tree tries each step: up to ``tries`` times, each for at most ``seconds``.
+
+    What fails then goes to the action ``fallback``, whose ports are the number and the text of the step. Where it
+    succeeds the tree goes on with the next step.
+    """
+
+    tries: int = 3
+    seconds: float = 120.0
+    fallback: str = FALLBACK
+
+
+def to_behavior_tree(plan: Steps, robust: Robust | None = None) -> str:
+    """Return the plan as XML: a sequence of actions and the ports of each.
+
+    ``robust`` wraps each action in ``Fallback``, ``RetryUntilSuccessful`` and ``Timeout``.
+    """
     root = ElementTree.Element("root", {"BTCPP_format": "4", "main_tree_to_execute": TREE})
     tree = ElementTree.SubElement(root, "BehaviorTree", {"ID": TREE})
     sequence = ElementTree.SubElement(tree, "Sequence", {"name": "plan"})
@@ -89,8 +110,15 @@ def to_behavior_tree(plan: Steps) -> str:
         if step.gives_result:
             values[RESULT] = _blackboard(step.number)
             giving.add(action)
-        attributes = {"ID": action, "name": _plain(f"{step.number} {step.text}"), **values}
-        ElementTree.SubElement(sequence, "Action", attributes)
+        name = _plain(f"{step.number} {step.text}")
+        attributes = {"ID": action, "name": name, **values}
+        parent = sequence if robust is None else _tries(sequence, robust, name)
+        ElementTree.SubElement(parent, "Action", attributes)
+        if robust is not None:
+            failed = {"number": str(step.number), "text": _plain(step.text)}
+            fallback = node_name(robust.fallback)
+            ports.setdefault(fallback, {}).update(dict.fromkeys(failed))
+            ElementTree.SubElement(sequence[-1], "Action", {"ID": fallback, **failed})
     model = ElementTree.SubElement(root, "TreeNodesModel")
     for action, names in ports.items():
         node = ElementTree.SubElement(model, "Action", {"ID": action})
@@ -100,6 +128,14 @@ def to_behavior_tree(plan: Steps) -> str:
             ElementTree.SubElement(node, "output_port", {"name": RESULT, "type": "std::string"})
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _tries(sequence: ElementTree.Element, robust: Robust, name: str) -> ElementTree.Element:
+    """Add what tries one action again and again; return the node that the action goes into."""
+    either = ElementTree.SubElement(sequence, "Fallback", {"name": name})
+    tries = {"num_attempts": str(robust.tries)}
+    retry = ElementTree.SubElement(either, "RetryUntilSuccessful", tries)
+    return ElementTree.SubElement(retry, "Timeout", {"msec": str(round(robust.seconds * 1000))})
 
 
 def node_name(action: str) -> str:
@@ -123,8 +159,27 @@ def _port(value: Value | Operator) -> str:
         return str(value.value)
     if isinstance(value, Named | Words):
         return _plain(value.text)
+    if noun := _only_noun(value):
+        return _plain(noun)
     assert isinstance(value, Described | OpenValue | Referred)
     return "json:" + json.dumps(value.as_json(), ensure_ascii=False, separators=(",", ":"))
+
+
+def _only_noun(value: Value) -> str:
+    """Return the noun or the name of what is described by nothing else; empty where more is said of it."""
+    if isinstance(value, Referred):
+        return _only_noun(value.value)
+    if isinstance(value, Named):
+        return value.text
+    if not isinstance(value, Described) or value.of is not None:
+        return ""
+    said = [each for each in value.conditions if each.predicate != PERSON or each.values]
+    if not said and value.conditions:
+        return PERSON
+    if len(said) != 1 or said[0].predicate not in _NAMING or len(said[0].values) != 1:
+        return ""
+    (noun,) = said[0].values
+    return noun.text if isinstance(noun, Named | Words) else ""
 
 
 def _blackboard(step: int) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from itertools import pairwise
 
 from annotations.language.english import ANY_OBJECT, KINDS_OF_PLACES, spellings
 from annotations.language.grounding import QUESTION_WORD
@@ -26,6 +27,8 @@ _KINDS: dict[tuple[str, int], frozenset[str]] = {
 _ATTRIBUTES = frozenset(
     (("object", "category"), ("location", "room"), ("name", "gender"), ("question", "answer"))
 )
+# A word for a kind of place of so many letters can begin another one: trash, but not bin.
+LONG = 5
 
 
 class Lookup:
@@ -68,14 +71,29 @@ class Lookup:
         return Words(text), is_missing
 
     def places_called(self, text: str) -> tuple[Named, ...]:
-        """Return the locations that a word for a kind of place can mean: "the trash" is a garbage bin."""
-        words = next((each for each in KINDS_OF_PLACES if text.casefold() in each), frozenset())
+        """Return the locations that a word for a kind of place can mean, which may be called something else.
+
+        Where some have the very word in their name, it means these: "the trash" is the trash bin, and not the
+        garbage bin beside it. Else it means those with another word of its kind.
+        """
+        said = text.casefold()
+        kind = next((each for each in KINDS_OF_PLACES if said in each), frozenset())
         rows: dict[str, list[Entity]] = {}
-        for entity in self._locations:
-            names = (entity.text, *entity.aliases)
-            if not words.isdisjoint(word for name in names for word in name.casefold().split()):
-                rows.setdefault(entity.text, []).append(entity)
+        for words in ({said} & kind, kind):
+            for entity in self._locations:
+                if any(_has_word(name, words) for name in (entity.text, *entity.aliases)):
+                    rows.setdefault(entity.text, []).append(entity)
+            if rows:
+                break
         return tuple(_named(name, of_name) for name, of_name in rows.items())
+
+
+def _has_word(name: str, words: Collection[str]) -> bool:
+    """Return whether a name has one of the words, also joined to the next one: "trashbin", "waste basket"."""
+    parts = name.casefold().replace("-", " ").split()
+    pairs = [first + second for first, second in pairwise(parts)]
+    long = tuple(each for each in words if len(each) >= LONG)
+    return any(each in words or each.startswith(long) for each in (*parts, *pairs))
 
 
 def _named(text: str, rows: Sequence[Entity]) -> Named:

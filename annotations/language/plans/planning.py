@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
@@ -29,7 +29,7 @@ from annotations.language.forms import (
     kind_of_class,
     walk,
 )
-from annotations.language.grounding import Slot
+from annotations.language.grounding import Slot, question_for
 from annotations.language.ontology import Ontology
 from annotations.language.plans.descriptions import (
     Describer,
@@ -87,13 +87,15 @@ def make_plan(
         ontology: says which texts are entities.
         predicates: which predicates are actions, and how to say them.
         action_names: predicate, or ``ask_operator`` → what the robot calls it and its arguments.
-        slots: the slots that were asked about; an entity that is only likely is named as a problem.
+        slots: the slots that were asked about; an entity that is only likely is named as a problem, and for
+            what is open the plan asks as ``question_for`` does.
         lookup: of ontology and predicates, to be shared by many plans; made here by default.
     """
     known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
     planner = _Planner(lookup, known, action_names or {})
     planner.problems += doubts_about(slots)
+    planner.open_slots = _open_slots(form, slots)
     planner.add(form)
     return Plan(tuple(planner.steps), tuple(planner.problems))
 
@@ -109,6 +111,19 @@ def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
             hint = f"ask whether it is {asked}"
             doubts.append(PlanProblem(Trouble.AMBIGUOUS, 0, message, hint))
     return tuple(dict.fromkeys(doubts))
+
+
+def _open_slots(form: Form, slots: Sequence[Slot]) -> dict[tuple[Form, str], list[Slot]]:
+    """Return what stands in the form for nothing, and the predicate that takes it → its slots, in order."""
+    found: defaultdict[tuple[Form, str], list[Slot]] = defaultdict(list)
+    for slot in slots:
+        if slot.filler is None and slot.path:
+            part, parent = form, form
+            for place in slot.path:
+                part, parent = children(part)[place], part
+            if isinstance(parent, Application):
+                found[part, str(parent.predicate)].append(slot)
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +198,7 @@ class _Planner:
     acting: _Acting = field(default_factory=lambda: _Acting("", Lambda(1, "e", ())))
     waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
+    open_slots: dict[tuple[Form, str], list[Slot]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.describer = Describer(
@@ -265,7 +281,7 @@ class _Planner:
                 if name not in arguments
                 else next(each for each in numbered if each not in arguments)
             )
-            arguments[free] = self._asked(value, name, place)
+            arguments[free] = self._asked(value, name, place, argument)
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
                 place = max(place_of_argument(action, name), len(gathered))
@@ -308,7 +324,8 @@ class _Planner:
             question = self._question(
                 constant.token_class, self.acting.next_slot(constant, predicate, place)
             )
-            return self.ask(question, constant.token_class, noun)
+            asked = self._as_slot(constant, predicate, question)
+            return self.ask(asked, constant.token_class, noun)
         value, is_missing = self.lookup.value(str(constant.value), predicate, place)
         if is_missing and (places := self.lookup.places_called(str(constant.value))):
             message = f"“{constant.value}” can be several places"
@@ -386,13 +403,24 @@ class _Planner:
         self.waiting.append((Trouble.NO_ANTECEDENT, message, "name it, or answer the question"))
         return self.ask(f"What do you mean by “{word}”?", kinds[0])
 
-    def _asked(self, value: Value, name: str, place: int) -> Value:
+    def _as_slot(self, form: Form, predicate: str, question: str) -> str:
+        """Return the question for the slot that stands in the form; ``question`` is the one without an utterance."""
+        slots = self.open_slots.get((form, predicate))
+        if not slots:
+            return question
+        slot = slots.pop(0) if len(slots) > 1 else slots[0]
+        return question_for(slot, form, self.predicates, question, self.lookup.classes)
+
+    def _asked(self, value: Value, name: str, place: int, argument: Form | None = None) -> Value:
         """Return the answer of the operator in place of an argument that is open."""
         if not isinstance(value, OpenValue):
             return value
         message = f"nothing says the {name.replace('_', ' ')} of “{self.acting.action}”"
         self.waiting.append((Trouble.MISSING_ARGUMENT, message, "name it, or answer the question"))
-        return self.ask(self._question("", self.acting.place_of(place)), name)
+        question = self._question("", self.acting.place_of(place))
+        if argument is not None:
+            question = self._as_slot(argument, self.acting.action, question)
+        return self.ask(question, name)
 
     def _question(self, entity_class: str, path: tuple[int, ...]) -> str:
         """Return the question for what is open at ``path`` of the action."""

@@ -18,15 +18,25 @@ from annotations.language.recipes.joint_plans import (
     Distances,
     Interleaving,
     JointPlan,
+    Note,
+    NoteKind,
     Reason,
     TooManyCommands,
     WrongDistance,
     join,
     joint_plan_schema,
     joint_plan_schema_text,
+    say_length,
 )
 from annotations.language.recipes.reading import MAX_ROW, read_primitive, read_recipe
-from annotations.language.recipes.rows import ActionPattern, Effect, EffectKind, Primitive, Recipe
+from annotations.language.recipes.rows import (
+    AFTER_COMMANDS,
+    ActionPattern,
+    Effect,
+    EffectKind,
+    Primitive,
+    Recipe,
+)
 from annotations.language.recipes.speaking import spoken
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
@@ -38,6 +48,7 @@ from annotations.language.recipes.task_plan import (
 )
 
 __all__ = [
+    "AFTER_COMMANDS",
     "DEFAULT_BOOK",
     "MAX_ROW",
     "MOST_COMMANDS",
@@ -47,6 +58,8 @@ __all__ = [
     "EffectKind",
     "Interleaving",
     "JointPlan",
+    "Note",
+    "NoteKind",
     "Primitive",
     "Reason",
     "Recipe",
@@ -69,6 +82,7 @@ __all__ = [
     "read_primitive",
     "read_recipe",
     "same_plan",
+    "say_length",
     "shipped_books",
     "spoken",
     "task_plan_schema",

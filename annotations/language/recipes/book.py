@@ -21,7 +21,14 @@ from annotations.language.errors import (
 )
 from annotations.language.plans import ASK, argument_names, node_name
 from annotations.language.recipes.reading import read_primitive, read_recipe
-from annotations.language.recipes.rows import ActionPattern, Name, Primitive, Recipe
+from annotations.language.recipes.rows import (
+    AFTER_COMMANDS,
+    ActionPattern,
+    Call,
+    Name,
+    Primitive,
+    Recipe,
+)
 from annotations.language.recipes.values import KINDS
 
 DEFAULT_BOOK = "primitives"
@@ -43,6 +50,12 @@ class RecipeBook:
     def recipes_of(self, action: str) -> Sequence[Recipe]:
         """Return the recipes of an action that can be used: those without an error."""
         return self._usable.get(action, ())
+
+    @property
+    def after_commands(self) -> Sequence[Call]:
+        """What the robot does when all commands are done, such as going back to the operator."""
+        recipes = self.recipes_of(AFTER_COMMANDS)
+        return recipes[0].calls if recipes else ()
 
     @cached_property
     def _by_name(self) -> Mapping[str, Primitive]:
@@ -104,7 +117,8 @@ class RecipeBook:
                 message = f"“{recipe.pattern}” has a recipe already"
                 yield error_at(recipe.position, message, "remove one of the two")
             shapes.add(recipe.pattern.shape())
-            if actions is not None and recipe.pattern.action not in actions:
+            known = None if actions is None else {*actions, AFTER_COMMANDS}
+            if known is not None and recipe.pattern.action not in known:
                 message = f"no form has the action {recipe.pattern.action}"
                 yield warning_at(recipe.position, message, "check its spelling")
             yield from _argument_problems(recipe)

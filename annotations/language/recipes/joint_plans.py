@@ -7,6 +7,9 @@ shortest walk. Commands of usual length have some hundred states.
 A command is cut before each move, after the robot has let go of something, after it has accompanied
 somebody, and after a question to the operator. To cut it anywhere else saves no walk: what comes before
 such a cut can be done right before what comes after it.
+
+What the recipe book has for ``after_commands()``, such as going back to the operator, comes once at the end,
+and the search counts that way too.
 """
 
 from __future__ import annotations
@@ -16,14 +19,20 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache
-from itertools import groupby, pairwise
+from itertools import combinations, groupby, pairwise
 from math import isfinite, prod
 from typing import Any, TypeAlias
 
 from annotations.language.errors import Refusal
-from annotations.language.plans import Named, Operator
+from annotations.language.plans import ASK, NOT_UNDERSTOOD, Named, Operator, Trouble, Words
 from annotations.language.recipes.book import RecipeBook
-from annotations.language.recipes.rows import OPERATOR_WORD, EffectKind, Primitive
+from annotations.language.recipes.rows import (
+    OPERATOR_WORD,
+    EffectKind,
+    Literal,
+    Primitive,
+    TheOperator,
+)
 from annotations.language.recipes.situation import (
     Place,
     Situation,
@@ -31,7 +40,7 @@ from annotations.language.recipes.situation import (
     are_equal,
     with_texts,
 )
-from annotations.language.recipes.speaking import step_texts
+from annotations.language.recipes.speaking import ORDINALS, spoken, step_texts
 from annotations.language.recipes.task_plan import (
     RecipeTrouble,
     TaskPlan,
@@ -43,7 +52,10 @@ from annotations.language.recipes.values import TaskValue, ids_in, with_results
 
 MOST_COMMANDS = 3
 MOST_STATES = 20_000  # about half a second; longer commands are done one after the other
-SAME_ROOM, OTHER_ROOM = 1.0, 2.0
+# Without a table the walk counts the ways from room to room; one inside a room is half of such a way.
+SAME_ROOM, OTHER_ROOM = 0.5, 1.0
+ROOMS, METRES = "rooms", "m"
+_NOTHING_HEARD = frozenset((Trouble.NOT_UNDERSTOOD, Trouble.NO_ACTION))
 
 
 class TooManyCommands(Refusal):
@@ -88,12 +100,36 @@ class Interleaving:
         }
 
 
+class NoteKind(StrEnum):
+    """What a person should know about a joint plan."""
+
+    NOT_UNDERSTOOD = "not_understood"  # the plan does the other commands
+    NOT_INTERLEAVED = "not_interleaved"  # commands that bring no points for interleaving
+    WAY_BACK = "way_back"  # where the robot ends, and that the walk counts it
+    WALK = "walk"  # what the walk counts
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A sentence about some commands of a joint plan."""
+
+    code: NoteKind
+    commands: tuple[int, ...]
+    message: str
+
+    def as_json(self) -> dict[str, Any]:
+        return {"code": str(self.code), "commands": list(self.commands), "message": self.message}
+
+
 @dataclass(frozen=True, slots=True)
 class JointPlan:
     """One plan of several commands, which count from 1.
 
     ``serves`` names the commands that each step is for. ``length_before`` is the walk of one command after
-    the other, ``length`` that of this plan, both in the unit of the distances.
+    the other, ``length`` that of this plan, both in the ``unit`` of the distances and with the way to where the
+    robot ends. ``interleaved`` has the pairs of commands of which one is done while the other is not finished,
+    or that share a step. ``ends_at`` is where the recipe book sends the robot after all commands; None where it
+    does not.
     """
 
     plan: TaskPlan
@@ -101,6 +137,20 @@ class JointPlan:
     interleavings: tuple[Interleaving, ...]
     length_before: float
     length: float
+    unit: str
+    interleaved: tuple[tuple[int, int], ...]
+    ends_at: TaskValue | None
+    notes: tuple[Note, ...]
+
+    @property
+    def is_interleaved(self) -> bool:
+        return bool(self.interleaved)
+
+    @property
+    def spoken(self) -> str:
+        """What the robot says: which commands it has not understood, and what it will do."""
+        missed = (each.message for each in self.notes if each.code is NoteKind.NOT_UNDERSTOOD)
+        return " ".join((*missed, spoken(self.plan)))
 
     def as_json(self) -> dict[str, Any]:
         """Return plain data that follow ``joint_plan_schema``."""
@@ -115,6 +165,11 @@ class JointPlan:
             "interleavings": [each.as_json() for each in self.interleavings],
             "length_before": self.length_before,
             "length": self.length,
+            "unit": self.unit,
+            "is_interleaved": self.is_interleaved,
+            "interleaved": [list(each) for each in self.interleaved],
+            "ends_at": self.ends_at and self.ends_at.as_json(),
+            "notes": [each.as_json() for each in self.notes],
         }
 
 
@@ -125,13 +180,14 @@ class Distances:
     ``table`` has the names of two places, in either order, and their distance; the operator is called
     ``operator``. Where it lacks a place it may have the room. A pair that it does not have is as far as its
     farthest one, so that no plan looks short by a way that nobody has measured. Without a table two places
-    of one room are 1 apart and others 2.
+    of one room are half a room apart and others one.
     """
 
     table: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    unit: str = METRES  # of the table
 
     @classmethod
-    def of_rows(cls, rows: Iterable[tuple[str, str, float]]) -> Distances:
+    def of_rows(cls, rows: Iterable[tuple[str, str, float]], unit: str = METRES) -> Distances:
         """Return the distances of a table with two places and their distance a row.
 
         Raises:
@@ -146,7 +202,12 @@ class Distances:
             if table.get((other, one), table.get((one, other), distance)) != distance:
                 raise WrongDistance(f"There are two distances from {one} to {other}.")
             table[one, other] = distance
-        return cls(table)
+        return cls(table, unit)
+
+    @property
+    def measure(self) -> str:
+        """The unit of a walk."""
+        return self.unit if self.table else ROOMS
 
     def between(self, one: Place, other: Place) -> float:
         """Return the distance of two places; 0 if they are the same."""
@@ -165,36 +226,166 @@ class Distances:
 
 
 def join(
-    plans: Sequence[TaskPlan], book: RecipeBook, distances: Distances | None = None
+    plans: Sequence[TaskPlan],
+    book: RecipeBook,
+    distances: Distances | None = None,
+    utterances: Sequence[str] = (),
 ) -> JointPlan:
     """Return one plan that does several commands.
 
     The order inside each command is kept, the robot holds one thing at a time, nobody is left in the middle
     of a conversation or on the way, and the walk is as short as that allows. Where two orders are equally
     good, the robot changes less often between commands and begins with the first. Commands of which each
-    keeps what it has taken cannot both be done; that is a problem of the plan.
+    keeps what it has taken cannot both be done; that is a problem of the plan. A command that was not understood
+    is left out and named, unless none of them was understood. At the end comes what the book has for
+    ``after_commands()``.
 
     Args:
         plans: up to three task plans, in the order in which the commands were given.
-        book: has the primitive that brings the robot back to where a command goes on.
+        book: has the primitive that brings the robot back to where a command goes on, and what comes at the end.
         distances: of the world's places.
+        utterances: the commands as they were said, to name those that were not understood.
 
     Raises:
         TooManyCommands: there are more plans.
     """
     if len(plans) > MOST_COMMANDS:
         raise TooManyCommands(f"A robot does at most {MOST_COMMANDS} commands at once.")
-    commands = [_Command.of(plan, number) for number, plan in enumerate(plans, start=1)]
-    search = _Search(commands, distances or Distances())
+    distances = distances or Distances()
+    names = [_say_which(number, utterances) for number, _ in enumerate(plans)]
+    understood = [not _is_not_understood(each) for each in plans]
+    done = [
+        plan if is_heard or not any(understood) else TaskPlan(())
+        for plan, is_heard in zip(plans, understood, strict=True)
+    ]
+    if len(plans) > 1:
+        done = [_naming_command(plan, name) for plan, name in zip(done, names, strict=True)]
+    commands = [_Command.of(plan, number) for number, plan in enumerate(done, start=1)]
+    ending = _ending(book)
+    search = _Search(commands, distances, ending)
     in_turn = [number for number, each in enumerate(commands) for _ in each.visits]
     order = search.best_order() if search.is_small else in_turn
     before, after = search.cost(in_turn), search.cost(order)
-    writer = _Writer(commands, _mover(book))
+    writer = _Writer(commands, _mover(book), distances.measure)
     for number in order:
         writer.add(number)
     interleavings = tuple(writer.interleavings(before, after))
-    plan = writer.plan(plans)
-    return JointPlan(plan, writer.serves(), interleavings, before.length, after.length)
+    interleaved = writer.interleaved()
+    writer.end(ending)
+    missed = [
+        Note(NoteKind.NOT_UNDERSTOOD, (number,), f"I did not understand {name}.")
+        for number, (name, is_heard) in enumerate(zip(names, understood, strict=True), start=1)
+        if any(understood) and not is_heard
+    ]
+    served = tuple(each.number for each in commands if each.visits)
+    return JointPlan(
+        writer.plan(done),
+        writer.serves(),
+        interleavings,
+        before.length,
+        after.length,
+        distances.measure,
+        interleaved,
+        ending[-1].place if ending else None,
+        (
+            *missed,
+            *_notes_about_interleaving(served, interleaved),
+            *_notes_about_the_walk(served, ending, distances),
+        ),
+    )
+
+
+def _is_not_understood(plan: TaskPlan) -> bool:
+    """Return whether a plan only asks what to do, since nothing of the command was understood."""
+    is_asking = all(_is_question(step) or step.action == ASK for step in plan.steps)
+    return is_asking and any(each.code in _NOTHING_HEARD for each in plan.problems)
+
+
+def _say_which(number: int, utterances: Sequence[str]) -> str:
+    said = "".join(utterances[number : number + 1])
+    return f"the {ORDINALS[number]} command" + (f": “{said}”" if said else "")
+
+
+def _naming_command(plan: TaskPlan, name: str) -> TaskPlan:
+    """Return a plan whose questions say in which command something was not understood."""
+    about_all = f"I did not understand {name}. What shall I do?"
+    about_part = f"I did not understand a part of {name}. What shall I do?"
+    question = about_all if _is_not_understood(plan) else about_part
+
+    def named(value: TaskValue) -> TaskValue:
+        is_general = isinstance(value, Words) and value.text == NOT_UNDERSTOOD
+        return Words(question, is_of_robot=True) if is_general else value
+
+    steps = (
+        replace(step, arguments=tuple((name, named(value)) for name, value in step.arguments))
+        for step in plan.steps
+    )
+    return replace(plan, steps=tuple(steps))
+
+
+@dataclass(frozen=True, slots=True)
+class _Last:
+    """A primitive that is done after all commands; ``place`` is where the robot is then, None where it was."""
+
+    primitive: Primitive
+    values: Mapping[str, TaskValue]
+    place: TaskValue | None
+
+
+def _ending(book: RecipeBook) -> tuple[_Last, ...]:
+    """Return what a book has for ``after_commands()``."""
+    ending: list[_Last] = []
+    for call in book.after_commands:
+        primitive = book.primitive(call.primitive)
+        assert primitive is not None
+        values: dict[str, TaskValue] = {}
+        for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
+            if isinstance(argument, TheOperator):
+                values[parameter.name] = Operator()
+            elif isinstance(argument, Literal):
+                values[parameter.name] = Words(argument.text, is_of_robot=True)
+        moves = primitive.effect(EffectKind.MOVES)
+        before = ending[-1].place if ending else None
+        ending.append(_Last(primitive, values, values.get(moves.subject) if moves else before))
+    return tuple(ending)
+
+
+def _notes_about_interleaving(
+    commands: Sequence[int], interleaved: Sequence[tuple[int, int]]
+) -> Iterator[Note]:
+    """Yield what says which of several commands bring no points for interleaving."""
+    alone = tuple(each for each in commands if not any(each in pair for pair in interleaved))
+    if len(commands) < 2 or not alone:
+        return
+    message = "The commands are done one after the other, so they bring no points for interleaving."
+    if len(alone) < len(commands):
+        (number,) = alone
+        message = f"Command {number} is done on its own, so it brings no points for interleaving."
+    yield Note(NoteKind.NOT_INTERLEAVED, alone, message)
+
+
+def _notes_about_the_walk(
+    commands: Sequence[int], ending: Sequence[_Last], distances: Distances
+) -> Iterator[Note]:
+    """Yield where the robot ends, and what the walk counts."""
+    if not commands:
+        return
+    place = ending[-1].place if ending else None
+    message = "The recipe book does not say where the robot goes after all commands."
+    if place is not None:
+        where = "back to you" if isinstance(place, Operator) else f"to the {_name(place)}"
+        message = f"After all commands the robot goes {where}; the walk counts that way."
+    yield Note(NoteKind.WAY_BACK, tuple(commands), message)
+    message = f"The walk is in {distances.measure}, as the table of distances has it."
+    if not distances.table:
+        message = "The walk counts the ways to another room, and a way inside a room as a half."
+    yield Note(NoteKind.WALK, tuple(commands), message)
+
+
+def say_length(length: float, unit: str) -> str:
+    """Return the length of a walk with its unit: ``3.5 rooms``, ``1 room``, ``12.3 m``."""
+    number = f"{length:.1f}".removesuffix(".0")
+    return f"{number} {'room' if (number, unit) == ('1', ROOMS) else unit}"
 
 
 @cache
@@ -206,7 +397,7 @@ def joint_plan_schema_text() -> str:
 def joint_plan_schema() -> dict[str, Any]:
     """Return the JSON Schema that ``JointPlan.as_json`` follows: that of task plans and what joint ones add."""
     schema = task_plan_schema()
-    schema["$id"] = "urn:gpsr-workbench:joint-plan:1"
+    schema["$id"] = "urn:gpsr-workbench:joint-plan:2"
     schema["title"] = "Joint plan"
     schema["description"] = (
         "The primitives that do several commands in one go, and why in this order."
@@ -219,11 +410,38 @@ def joint_plan_schema() -> dict[str, Any]:
     problem["required"].append("commands")
     problem["properties"]["commands"] = {"description": "Those that it is about.", **numbers}
     length = {"type": "number", "minimum": 0}
-    schema["required"] += ["interleavings", "length_before", "length"]
+    schema["required"] += ["interleavings", "length_before", "length", "unit"]
+    schema["required"] += ["is_interleaved", "interleaved", "ends_at", "notes"]
     schema["properties"] |= {
         "interleavings": {"type": "array", "items": {"$ref": "#/$defs/interleaving"}},
         "length_before": {"description": "The walk of one command after the other.", **length},
-        "length": {"description": "The walk of this plan.", **length},
+        "length": {"description": "The walk of this plan, to where the robot ends.", **length},
+        "unit": {"description": "Of both: m, rooms, or as was sent.", "type": "string"},
+        "is_interleaved": {"description": "Whether any two are interleaved.", "type": "boolean"},
+        "interleaved": {
+            "description": "Pairs of commands that share a step, or of which one is done inside the other.",
+            "type": "array",
+            "items": {**numbers, "minItems": 2, "maxItems": 2},
+        },
+        "ends_at": {
+            "description": "Where the recipe book sends the robot after all commands.",
+            "oneOf": [{"$ref": "#/$defs/value"}, {"type": "null"}],
+        },
+        "notes": {
+            "description": "What to know about the plan.",
+            "type": "array",
+            "items": {"$ref": "#/$defs/note"},
+        },
+    }
+    schema["$defs"]["note"] = {
+        "type": "object",
+        "required": ["code", "commands", "message"],
+        "additionalProperties": False,
+        "properties": {
+            "code": {"enum": [str(each) for each in NoteKind]},
+            "commands": numbers,
+            "message": {"type": "string", "minLength": 1},
+        },
     }
     schema["$defs"]["interleaving"] = {
         "description": "Steps of several commands that come together, and why.",
@@ -389,9 +607,12 @@ _State: TypeAlias = tuple[tuple[int, ...], int]
 class _Search:
     """Finds the best order of visits."""
 
-    def __init__(self, commands: Sequence[_Command], distances: Distances) -> None:
+    def __init__(
+        self, commands: Sequence[_Command], distances: Distances, ending: Sequence[_Last]
+    ) -> None:
         self._commands = commands
         self._distances = distances
+        self._ending = ending
         self._begin: _State = (tuple(0 for _ in commands), -1)
         self._goal = tuple(len(each.visits) for each in commands)
 
@@ -417,7 +638,7 @@ class _Search:
                         best[reached] = (total, state)
                     following[reached] = None
             layer = list(following)
-        state = min(layer, key=lambda each: best[each][0])
+        state = min(layer, key=lambda each: best[each][0].plus(self._cost_of_ending(each)))
         order = []
         while state != self._begin:
             order.append(state[1])
@@ -425,12 +646,25 @@ class _Search:
         return order[::-1]
 
     def cost(self, order: Iterable[int]) -> _Cost:
-        """Return what an order of commands costs."""
+        """Return what an order of commands costs, with the way to where the robot ends."""
         state, cost = self._begin, _Cost()
         for number in order:
             step = self._step(state, number)
             assert step is not None
             state, cost = step[0], cost.plus(step[1])
+        return cost.plus(self._cost_of_ending(state))
+
+    def _place_in(self, state: _State) -> Place:
+        done, last = state
+        return self._commands[last].visits[done[last] - 1].end if last >= 0 else Operator()
+
+    def _cost_of_ending(self, state: _State) -> _Cost:
+        """Return what comes after all commands; nothing where no command was done."""
+        place, cost = self._place_in(state), _Cost()
+        for each in self._ending if state[1] >= 0 else ():
+            if each.place is not None and not are_equal(place, each.place):
+                cost = cost.plus(_Cost(0, self._distances.between(place, each.place), 1))
+                place = each.place
         return cost
 
     def _step(self, state: _State, number: int) -> tuple[_State, _Cost] | None:
@@ -439,7 +673,7 @@ class _Search:
         if done[number] == self._goal[number]:
             return None
         visit = self._commands[number].visits[done[number]]
-        place: Place = self._commands[last].visits[done[last] - 1].end if last >= 0 else Operator()
+        place = self._place_in(state)
         others = [
             each.visits[count - 1]
             for at, (each, count) in enumerate(zip(self._commands, done, strict=True))
@@ -479,9 +713,10 @@ class _Stop:
 class _Writer:
     """Writes the visits in their order as one plan."""
 
-    def __init__(self, commands: Sequence[_Command], mover: Primitive | None) -> None:
+    def __init__(self, commands: Sequence[_Command], mover: Primitive | None, unit: str) -> None:
         self._commands = commands
         self._mover = mover
+        self._unit = unit
         self._next = [0 for _ in commands]
         self._situation = Situation(
             commands={
@@ -536,6 +771,28 @@ class _Writer:
             return self._situation.moved_by
         return self._situation.step_that_found(self._situation.known(value))
 
+    def end(self, ending: Sequence[_Last]) -> None:
+        """Add what comes after all commands; it is for all of them."""
+        everyone = {each.number for each in self._commands if each.visits}
+        for each in ending if everyone else ():
+            if self._situation.add(each.primitive, each.values, 0) is not None:
+                self._serves.append(everyone)
+
+    def interleaved(self) -> tuple[tuple[int, int], ...]:
+        """Return the pairs of commands that share a step, or of which one begins before the other is finished.
+
+        Questions to the operator do not count: they come first, whoever they are for.
+        """
+        steps: dict[int, list[int]] = {}
+        for step, commands in zip(self._situation.steps, self._serves, strict=True):
+            for command in commands if not _is_question(step) else ():
+                steps.setdefault(command, []).append(step.number)
+        return tuple(
+            (one, other)
+            for one, other in combinations(sorted(steps), 2)
+            if steps[one][0] <= steps[other][-1] and steps[other][0] <= steps[one][-1]
+        )
+
     def serves(self) -> tuple[tuple[int, ...], ...]:
         return tuple(tuple(sorted(each)) for each in self._serves)
 
@@ -572,10 +829,10 @@ class _Writer:
         for one, other in pairwise(stays):
             if is_shorter:
                 yield from _same_room(one[-1], other[0])
-        everyone = tuple(each.number for each in self._commands)
+        everyone = tuple(each.number for each in self._commands if each.visits)
         if is_shorter:
-            lengths = f"{after.length:g} long instead of {before.length:g}"
-            message = f"The walk is {lengths} for one command after the other."
+            lengths = [say_length(each.length, self._unit) for each in (after, before)]
+            message = f"The walk is {' instead of '.join(lengths)} for one command after the other."
             yield Interleaving(Reason.SHORTER, everyone, (), message)
         if after.conflicts < before.conflicts:
             message = "The robot holds one thing at a time, so what it keeps it takes last."

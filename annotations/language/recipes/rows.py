@@ -9,6 +9,8 @@ from typing import TypeAlias
 
 from annotations.language.errors import Position
 
+# The left side of the recipe for what a robot does when all commands are done; no form has this action.
+AFTER_COMMANDS = "after_commands"
 OPERATOR_WORD = "operator"  # stands for the person who gave the command, and for where they are
 
 

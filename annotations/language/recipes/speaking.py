@@ -24,7 +24,7 @@ from annotations.language.recipes.values import PLACE, TaskValue, content, kinds
 
 YOU = "you"
 THE = "the "
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 COME_BACK = "come back to you"
 NOTHING = "I have nothing to do."
 _PRONOUNS = {PERSON: "them", THING: "it"}
@@ -56,6 +56,7 @@ _TURNED = {
     "you": "me",
 }
 _TO_TURN = re.compile(rf"\b({'|'.join(_TURNED)})\b", re.IGNORECASE)
+_ON = re.compile(r"\bon (?=\{(\w+)\})")
 _MOST_CLAUSES = 3  # after which "it" and "them" may stand for something else
 
 
@@ -63,7 +64,7 @@ def spoken(plan: TaskPlan) -> str:
     """Return one sentence for the robot to speak.
 
     >>> spoken(plan)
-    'I will go to the kitchen, find a coke, and bring it to you.'
+    'I will go to the kitchen, find a coke, take it, and bring it to you.'
 
     A plan that only asks is said as it asks.
     """
@@ -99,7 +100,9 @@ class _Clauses:
         while at < len(self.steps):
             step = self.steps[at]
             delivery = self._delivery(at)
-            if delivery:
+            if delivery:  # the way there goes without saying
+                clauses.append(self.say(step, self._last))
+                self._remember(step)
                 step = self.steps[at + delivery]
                 effect = step.primitive.effect(EffectKind.RELEASES)
                 assert effect is not None
@@ -175,7 +178,7 @@ class _Clauses:
         alike = [each for each in self.steps if _learnt(each, {}) == words]
         if len(alike) > 1 and step.primitive.effect(EffectKind.SPEAKS) and words.startswith(THE):
             # Of answers that somebody gives in one place their order tells which is meant.
-            ordinal = "".join(_ORDINALS[alike.index(step) :][:1])
+            ordinal = "".join(ORDINALS[alike.index(step) :][:1])
             return f"{THE}{ordinal} {words.removeprefix(THE)}" if ordinal else words
         is_one_of_many = len(alike) > 1
         is_one_of_many |= self._has_namesake(step)
@@ -257,17 +260,22 @@ def _preposition(place: TaskValue) -> str:
     """Return "in" for a room, "with" for the operator and "at" for any other place."""
     if isinstance(place, Operator):
         return "with"
-    return "in" if isinstance(place, Named) and place.entity_class == "room" else "at"
+    return "in" if _is_room(place) else "at"
+
+
+def _is_room(value: TaskValue) -> bool:
+    return isinstance(value, Named) and value.entity_class == "room"
 
 
 def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
-    """Return the fullest pattern whose parameters all have a value."""
+    """Return the fullest pattern whose parameters all have a value; nothing is said to be on a room."""
     names = {
         each: {match["name"] for match in PLACEHOLDER.finditer(each)} for each in primitive.said
     }
     fitting = [each for each in primitive.said if names[each] <= values.keys()]
     if fitting:
-        return max(fitting, key=lambda each: len(names[each]))
+        fullest = max(fitting, key=lambda each: len(names[each]))
+        return _ON.sub(lambda match: "in " if _is_room(values[match[1]]) else match[0], fullest)
     name = _CAPITAL.sub(" ", primitive.name.replace("_", " ")).lower()
     return " ".join((name, *(f"{{{each}}}" for each in values)))
 

@@ -1,4 +1,4 @@
-"""Words that make another request of a command: that forbid it, set a condition, or ask for several things.
+"""Words that make another request of a command: that forbid it, set a condition, ask for several, or take it back.
 
 No form has a place for them, so a parser that answers with the rest does what nobody asked for: "don't bring me the
 honey" brings the honey.
@@ -9,26 +9,56 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
+from itertools import islice
 
 from annotations.language.english import (
-    ASKING_PHRASES,
+    COMMAND_NOUNS,
     CONDITIONAL_PHRASES,
+    COUNTING_PHRASES,
+    EXCUSED_PHRASES,
+    EXCUSING_PHRASES,
     FINISHED_WORDS,
     FORBIDDING_PHRASES,
     NUMBERS,
+    ORDERING_PHRASES,
+    POLITE_AFTER_IF,
     POLITE_BEFORE_IF,
+    SEQUENCE_WORDS,
+    SEVERAL_PHRASES,
+    SUBJECT_WORDS,
     TAKING_BACK_PHRASES,
 )
 from annotations.language.grounding import Anonymized
 
+_LONGEST_BEFORE = 40  # characters before a name in which a number is looked for
+
+
+class Qualified(StrEnum):
+    """What makes another request of a command."""
+
+    FORBIDDEN = "forbidden"
+    CONDITION = "condition"
+    NUMBER = "number"
+    TAKEN_BACK = "taken_back"
+
+
+@dataclass(frozen=True, slots=True)
+class Objection:
+    """Why a robot does not do what it may have understood. ``code`` is one for machines, ``message`` a sentence;
+    ``start`` and ``end`` are characters of the utterance."""
+
+    code: str
+    message: str
+    start: int
+    end: int
+
 
 def _any_of(phrases: Iterable[str]) -> str:
-    return rf"\b(?:{'|'.join(map(re.escape, phrases))})\b"
+    longest_first = sorted(phrases, key=len, reverse=True)
+    return rf"\b(?:{'|'.join(map(re.escape, longest_first))})(?!\w)"
 
 
-_QUALIFIED = re.compile(rf"{_any_of((*FORBIDDING_PHRASES, *CONDITIONAL_PHRASES))}", re.IGNORECASE)
-_ASKED = re.compile(_any_of(ASKING_PHRASES), re.IGNORECASE)
 # "As soon as you are done" is no condition: it speaks of the command before.
 _DONE = re.compile(
     rf"{_any_of((*CONDITIONAL_PHRASES, 'if'))}\s+(?:possible\b|(?:you|that|this|it|they)(?:'\w+)?"
@@ -37,57 +67,138 @@ _DONE = re.compile(
 )
 # "It would make my day if you came" is a wish.
 _WISH = re.compile(r"\b(?:i|it|we|that)(?:'d| would)(?:\s+[\w']+){0,5}?\s+if\b", re.IGNORECASE)
-_IF = re.compile(r"\bif\b", re.IGNORECASE)
-_POLITE_IF = re.compile(rf"{_any_of(POLITE_BEFORE_IF)},? if\b", re.IGNORECASE)
+_EXCUSE = re.compile(_any_of(EXCUSING_PHRASES), re.IGNORECASE)
+# A negation and what it belongs to: a clause ends at a sign or a joint.
+_CLAUSE = re.compile(r"(?:(?!\b(?:and|so|but|because|since|then)\b)[^.,;:!?])+", re.IGNORECASE)
+_NEGATION = re.compile(
+    r"\b(?:not|never|no(?! one\b)|(?:nothing|nobody|no one)(?! (?:has|have|is|was|can)\b(?! (?:to|allowed)\b))|neither"
+    r"|cannot|dont)(?!\w)|n't(?!\w)",
+    re.IGNORECASE,
+)
+_EXCUSED = re.compile(rf"\W*(?:{_any_of(EXCUSED_PHRASES)})", re.IGNORECASE)
+_ORDERING = re.compile(_any_of(ORDERING_PHRASES), re.IGNORECASE)
+_REPORTING = re.compile(  # "Ann has not met you", "can't find it": a report, or "can't you"
+    r"(?<!\w)(?:(?!you\b)\w+ (?:is|are|has|have|had|does|did|was|were) ?"
+    r"|(?:ca|could|would|wo|is|are|have|has|does|did))$",
+    re.IGNORECASE,
+)
+_WHY = re.compile(r"\bwhy ?\w*$", re.IGNORECASE)
+_YOU = re.compile(r"\byou\b", re.IGNORECASE)
+_ASKING = re.compile(r"\W*(?:can|could|will|would) you\b", re.IGNORECASE)
+_SUBJECT = re.compile(
+    rf"{_any_of(SUBJECT_WORDS)}|_ (?=\w)|\b(?:the|my|our|his|her|their) \w+ (?=(?:is|are|has|have|does|do|can|was)\b)",
+    re.IGNORECASE,
+)
+_MOST_NEGATIONS = 8  # in one clause
+_FORBIDDING = re.compile(_any_of(FORBIDDING_PHRASES), re.IGNORECASE)
+_TAKING_BACK = re.compile(_any_of(TAKING_BACK_PHRASES), re.IGNORECASE)
+# "should Robin ask": somebody else at the beginning of a sentence.
+_SHOULD = r"(?:^|(?<=[.,;:!?]\s))should (?!you\b|i\b|we\b)(?=\w)"
+# "when Robin comes", "once they are done": what somebody else does first.
+# "When the first is done" speaks of a command.
+_WHEN = (
+    r"\b(?:when|once) (?:he|she|they|somebody|someone|anybody|anyone|nobody"
+    rf"|the (?!{_any_of(COMMAND_NOUNS | SEQUENCE_WORDS)})\w+|_+)(?= \w)"
+)
+_CONDITION = re.compile(rf"{_any_of(CONDITIONAL_PHRASES)}|{_SHOULD}|{_WHEN}", re.IGNORECASE)
+_IF = re.compile(
+    rf"(?P<wish>{_any_of(POLITE_BEFORE_IF)},? )?\bif\b(?P<polite> {_any_of(POLITE_AFTER_IF)})?",
+    re.IGNORECASE,
+)
+_COUNTING = re.compile(_any_of(COUNTING_PHRASES), re.IGNORECASE)
 _NUMBER_BEFORE = re.compile(
-    rf"(?:{_any_of((*NUMBERS[2:], 'both', 'every', 'each'))}|\b(?:[2-9]|[1-9]\d+))\s+(?:of\s+)?(?:the\s+)?$",
+    rf"(?:{_any_of((*NUMBERS[2:], *SEVERAL_PHRASES))}|\b(?:[2-9]|[1-9]\d+))\s+(?:of\s+)?(?:the\s+)?$",
     re.IGNORECASE,
 )
 
 
-class Hold(Enum):
-    """What keeps a robot from doing what is said: it is forbidden, it has a condition, or it is taken back."""
+def objections(heard: Anonymized) -> tuple[Objection, ...]:
+    """Return what makes another request of a command, whatever a parser answers, in the order of the utterance.
 
-    FORBIDDEN = re.compile(_any_of(FORBIDDING_PHRASES), re.IGNORECASE)
-    CONDITION = re.compile(_any_of((*CONDITIONAL_PHRASES, "if")), re.IGNORECASE)
-    TAKEN_BACK = re.compile(_any_of(TAKING_BACK_PHRASES), re.IGNORECASE)
-
-
-@dataclass(frozen=True, slots=True)
-class Held:
-    """Words that forbid a command, set a condition or take back; ``start`` is their place in the utterance."""
-
-    start: int
-    hold: Hold
-
-
-def holds_in(utterance: str) -> Iterator[Held]:
-    """Yield what forbids, sets a condition or takes back, kind by kind. Takes linear time.
-
-    "I would be glad if you came" sets no condition, and "don't forget to come" forbids nothing.
+    What stands in the name of an entity says nothing. Takes linear time.
     """
-    text = utterance.replace("’", "'")
-    harmless = bytearray(len(text))
-    for words in (_ASKED, _DONE, _WISH, _POLITE_IF):
-        for match in words.finditer(text):
-            harmless[match.start() : match.end()] = b"\1" * len(match[0])
-    for hold in Hold:
-        for match in hold.value.finditer(text):
-            if not harmless[match.start()]:
-                yield Held(match.start(), hold)
+    text, end = "", 0
+    for span in heard.spans:
+        text += heard.original[end : span.start] + "_" * (span.end - span.start)
+        end = span.end
+    text = (text + heard.original[end:]).replace("’", "'")
+    found = [*_qualified(text), *_numbers(heard)]
+    return tuple(sorted(found, key=lambda each: each.start))
+
+
+def holds_in(utterance: str) -> Iterator[Objection]:
+    """Yield what forbids, sets a condition or takes back, kind by kind. Takes linear time."""
+    return _qualified(utterance.replace("’", "'"))
 
 
 def is_qualified(utterance: str) -> bool:
-    """Return whether an utterance forbids what it says, or sets a condition.
+    """Return whether an utterance forbids what it says, sets a condition, or takes it back.
 
     "I would be glad if you came" sets none. Takes linear time.
     """
-    text = utterance.replace("’", "'")
-    if _QUALIFIED.search(text):
-        return True
-    return len(_IF.findall(text)) > len(_POLITE_IF.findall(text))
+    return any(True for _ in holds_in(utterance))
 
 
 def says_number(heard: Anonymized) -> bool:
     """Return whether an utterance asks for several of what it names: "two apples", "both cups"."""
-    return any(_NUMBER_BEFORE.search(heard.original[: span.start][-40:]) for span in heard.spans)
+    return any(True for _ in _numbers(heard))
+
+
+def _qualified(text: str) -> Iterator[Objection]:
+    for harmless in (_DONE, _WISH):
+        text = harmless.sub(_blank, text)
+    ifs = [each for each in _IF.finditer(text) if not (each["wish"] or each["polite"])]
+    text = _EXCUSE.sub(_blank, text)
+    for match in _TAKING_BACK.finditer(text):
+        yield _objection(Qualified.TAKEN_BACK, match, "“{}” takes back what was said.")
+    text = _TAKING_BACK.sub(_blank, text)
+    for clause in _CLAUSE.finditer(text):
+        negation = _order_not_to(clause[0])
+        if negation is not None:
+            begin = clause.start()
+            message = f"“{clause[0].strip()}” forbids it."
+            yield Objection(Qualified.FORBIDDEN, message, begin + negation.start(), clause.end())
+    for match in _FORBIDDING.finditer(text):
+        yield _objection(Qualified.FORBIDDEN, match, "“{}” forbids it.")
+    for match in (*_CONDITION.finditer(text), *ifs):
+        yield _objection(Qualified.CONDITION, match, "“{}” sets a condition that I cannot check.")
+
+
+def _blank(match: re.Match[str]) -> str:
+    return "_" * len(match[0])
+
+
+def _order_not_to(clause: str) -> re.Match[str] | None:
+    """Return the negation with which a clause forbids something.
+
+    A negation orders something where nobody is its subject ("bring me no milk"), where it is "you", or where the clause
+    speaks of what is wanted ("I don't want you to"). "Can't you" asks for it.
+    """
+    for negation in islice(_NEGATION.finditer(clause), _MOST_NEGATIONS):
+        before, after = clause[: negation.start()], clause[negation.end() :]
+        if _EXCUSED.match(after) or negation[0] == clause.strip():
+            continue
+        if _ORDERING.search(clause):
+            return negation
+        is_report = _REPORTING.search(before) and not _YOU.search(before)
+        if not (
+            is_report or _WHY.search(before) or _ASKING.match(before) or _SUBJECT.search(before)
+        ):
+            return negation
+    return None
+
+
+def _objection(code: Qualified, match: re.Match[str], message: str) -> Objection:
+    return Objection(code, message.format(match[0].strip()), match.start(), match.end())
+
+
+def _numbers(heard: Anonymized) -> Iterator[Objection]:
+    if _COUNTING.search(heard.original):
+        return
+    for span in heard.spans:
+        begin = max(0, span.start - _LONGEST_BEFORE)
+        match = _NUMBER_BEFORE.search(heard.original[begin : span.start])
+        if match:
+            said = heard.original[begin + match.start() : span.end]
+            message = f"“{said}” are several; I take one thing at a time."
+            yield Objection(Qualified.NUMBER, message, begin + match.start(), span.end)

@@ -38,6 +38,7 @@ from annotations.language.templates.sample_notes import (
     SampleRequest,
 )
 from annotations.language.templates.sampling import Language, Sample
+from annotations.language.templates.spreading import spread_derivations
 from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.template_checks import (
     TemplateChecker,
@@ -97,5 +98,6 @@ __all__ = [
     "read_template",
     "set_problems",
     "shared_problems",
+    "spread_derivations",
     "template_checker",
 ]

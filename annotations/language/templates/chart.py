@@ -55,7 +55,7 @@ class ChartDerivation:
     """One way to derive a command: the template of a task category and the form it gives.
 
     ``arcs`` are the numbers of the arcs that fill the class tokens of the form, in order; None for one that
-    no arc with a number fills. ``cost`` is that of the path through the lattice.
+    no arc with a number fills. ``cost`` is that of the path through the lattice, ``changes`` are those of its arcs.
     """
 
     form_text: str
@@ -63,6 +63,7 @@ class ChartDerivation:
     template_index: int
     arcs: tuple[int | None, ...] = ()
     cost: int = field(default=0, compare=False)
+    changes: tuple[int, ...] = field(default=(), compare=False)
 
 
 class TemplateChart:
@@ -171,7 +172,8 @@ class _TemplateSet:
                 for form in forest.forms(root, 0, lattice.end):
                     text = canonical_text(form.anonymized)
                     yield ChartDerivation(
-                        text, self.category.name, index, _arcs_of(form), form.cost
+                        *(text, self.category.name, index, _arcs_of(form)),
+                        *(form.cost, form.changes),
                     )
 
 
@@ -206,6 +208,7 @@ class _Filled:
     aligned: Form
     precedence: Precedence
     cost: int
+    changes: tuple[int, ...] = field(default=(), compare=False)
 
 
 # What a nonterminal became: a form, or the leaves that stand for its words. The number of a wildcard is its arc's.
@@ -226,10 +229,11 @@ class _Reading:
     slots: tuple[tuple[Wildcard, int], ...] = ()
     inner: tuple[tuple[Wildcard, int], ...] = ()
     leaves: Leaves = ()
+    changes: tuple[int, ...] = field(default=(), compare=False)
 
     @property
     def said(self) -> object:
-        """All but the cost: of two readings that say the same, the cheaper one counts."""
+        """All but the cost and the changes: of two readings that say the same, the cheaper one counts."""
         return self.bound, self.slots, self.inner, self.leaves
 
     def then(self, other: _Reading) -> _Reading | None:
@@ -244,6 +248,7 @@ class _Reading:
             self.slots + other.slots,
             self.inner + other.inner,
             self.leaves + other.leaves,
+            self.changes + other.changes,
         )
 
 
@@ -291,7 +296,7 @@ class _Forest:
         if rule.name in asker.composed:
             lines = [self.owner.lines[line] for line in self.owner.book.line_rules[rule.name]]
             readings = [
-                _Reading(form.cost, ((rule.name, form),))
+                _Reading(form.cost, ((rule.name, form),), changes=form.changes)
                 for line in lines
                 if end in self.chart.ends(line.number, start)
                 for form in self.forms(line, start, end)
@@ -306,6 +311,7 @@ class _Forest:
                         tuple(sorted(bound, key=_name)),
                         inner=inside.slots + inside.inner,
                         leaves=inside.leaves if keeps else (),
+                        changes=inside.changes,
                     )
                 )
         else:
@@ -363,7 +369,11 @@ class _Forest:
                     leaf = replace(step, id=arc.number if arc.number >= 0 else None)
                     if arc.number >= 0 and step.name in asker.wildcards:
                         slots = ((step, arc.number),)
-                yield arc.end, [_Reading(arc.cost, slots=slots, leaves=(leaf,) if keeps else ())]
+                leaves = (leaf,) if keeps else ()
+                yield (
+                    arc.end,
+                    [_Reading(arc.cost, slots=slots, leaves=leaves, changes=arc.changes)],
+                )
 
 
 def _best(asker: _Rule, readings: Sequence[_Reading]) -> list[_Reading]:
@@ -428,7 +438,7 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
         return None
     inner = tuple(_words(values[name]) for name in rule.names)
     precedence: Precedence = inner if rule.line is None else (rule.line, *inner)
-    return _Filled(anonymized, aligned, precedence, reading.cost)
+    return _Filled(anonymized, aligned, precedence, reading.cost, reading.changes)
 
 
 class _SlotArcs:

@@ -15,6 +15,7 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Unknown,
 )
 from annotations.language.limits import MAX_PREDICATE
 from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symbol, read_wildcard
@@ -45,7 +46,8 @@ def precedence_of(value: tuple[str, ...] | Composed) -> Precedence:
 def fill_anonymized(form: Form, bindings: Mapping[str, tuple[str, ...] | Composed]) -> Form:
     """Return the form with what each nonterminal became, and the class token of each wildcard.
 
-    A nonterminal became words, or the form of a line. A sequence in a sequence becomes one.
+    A nonterminal became words, or the form of a line. A sequence in a sequence becomes one. Where a line says
+    nothing (its form is UNKNOWN), the argument is left out, and the description that has it: ``(at $1 $where)``.
 
     Raises:
         LanguageError: the words for a predicate are not a name.
@@ -83,24 +85,39 @@ def bare(wildcard: Wildcard) -> Wildcard:
     return Wildcard(wildcard.name, wildcard.type, wildcard.id, wildcard.obfuscated)
 
 
-def _fill(form: Form, values: Mapping[str, Form], anonymize: bool) -> Form:
+def _fill(form: Form, values: Mapping[str, Form | None], anonymize: bool) -> Form:
     match form:
         case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(_fill(body, values, anonymize) for body in bodies))
+            said = [body for body in bodies if not _is_silent(body, values)]
+            filled = tuple(_fill(body, values, anonymize) for body in said)
+            return Lambda(variable, type_, filled) if filled else UNKNOWN
         case Application(predicate, arguments):
             name = (
                 _predicate(predicate, values) if isinstance(predicate, Nonterminal) else predicate
             )
-            filled = [_fill(argument, values, anonymize) for argument in arguments]
+            given = [each for each in arguments if not _is_left_out(each, values)]
+            parts = [_fill(argument, values, anonymize) for argument in given]
             if name == SEQUENCE:
-                filled = [part for argument in filled for part in _parts(argument)]
-            return Application(name, tuple(filled))
+                parts = [part for argument in parts for part in _parts(argument)]
+            return Application(name, tuple(parts))
         case Nonterminal(name):
-            return values[name]
+            return values[name] or UNKNOWN
         case Wildcard():
             return Constant(form.token) if anonymize else bare(form)
         case _:
             return form
+
+
+def _is_left_out(form: Form, values: Mapping[str, Form | None]) -> bool:
+    """Return whether a form is a nonterminal whose line says nothing."""
+    return isinstance(form, Nonterminal) and values[form.name] is None
+
+
+def _is_silent(body: Form, values: Mapping[str, Form | None]) -> bool:
+    """Return whether a description lacks an argument, since a line says nothing."""
+    return isinstance(body, Application) and any(
+        _is_left_out(each, values) for each in body.arguments
+    )
 
 
 def _parts(form: Form) -> tuple[Form, ...]:
@@ -109,10 +126,10 @@ def _parts(form: Form) -> tuple[Form, ...]:
     return (form,)
 
 
-def _argument(leaves: Filler | Composed) -> Form:
-    """Return words as one constant (a number if they are digits); no words are UNKNOWN."""
+def _argument(leaves: Filler | Composed) -> Form | None:
+    """Return words as one constant (a number if they are digits); no words are UNKNOWN, a line without a form None."""
     if isinstance(leaves, Composed):
-        return leaves.form
+        return None if isinstance(leaves.form, Unknown) else leaves.form
     spoken = [leaf for leaf in leaves if not (isinstance(leaf, Wildcard) and leaf.kind == "void")]
     if len(spoken) == 1 and isinstance(spoken[0], Wildcard):
         return bare(spoken[0])
@@ -128,7 +145,7 @@ def _word(leaf: str | Text | Wildcard) -> str:
     return leaf if isinstance(leaf, str) else leaf.value
 
 
-def _predicate(slot: Nonterminal, values: Mapping[str, Form]) -> str:
+def _predicate(slot: Nonterminal, values: Mapping[str, Form | None]) -> str:
     value = values[slot.name]
     name = str(value.value).replace(" ", "_") if isinstance(value, Constant) else ""
     if _PREDICATE.fullmatch(name) is None or len(name) > MAX_PREDICATE:

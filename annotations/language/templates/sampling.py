@@ -181,13 +181,13 @@ class _Judge:
             with_templates.append(TaskCategory(category.name, category.grammar, templates))
             self._recognizers[category.name] = Recognizer(category.grammar)
         self._chart = TemplateChart(with_templates)
-        self._rules = [_WordRules(each) for each in with_templates]
+        self._rules = {each.name: _WordRules(each) for each in with_templates}
 
     def judge(self, drawn: _Drawn) -> _Judged:
         """Return what becomes of the command of a derivation."""
         name, index = drawn.population.category.name, drawn.population.template_index
         derivations = [ChartDerivation(drawn.form_text, name, index)]
-        if self._is_ambiguous(drawn.command):
+        if not self._is_decided(drawn):
             derivations = [
                 ChartDerivation(
                     each.form_text,
@@ -217,15 +217,17 @@ class _Judge:
         )
         return _Judged(expansion, tuple(conflicts))
 
-    def _is_ambiguous(self, command: str) -> bool:
-        """Return whether there may be more than one derivation: only then the chart has to say which wins."""
-        words = tuple(command.split())
-        found = 0
-        for rules in self._rules:
-            found += rules.count(words, at_most=2 - found)
-            if found > 1:
-                return True
-        return False
+    def _is_decided(self, drawn: _Drawn) -> bool:
+        """Return whether no chart has to say which derivation wins: it is the only one of the first category that has
+        any, and no other category has several."""
+        words = tuple(drawn.command.split())
+        found: list[str] = []
+        for name, rules in self._rules.items():
+            count = rules.count(words, at_most=2)
+            if count > 1:
+                return False
+            found += [name] * count
+        return found[:1] in ([], [drawn.population.category.name])
 
 
 class _WordRules:

@@ -6,7 +6,6 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -15,27 +14,23 @@ from django.core.management.base import CommandParser
 
 from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_world
-from annotations.models import World
 from annotations.templatetags.task_plans import call
-from parser_service.models import TrainingRun
 from parser_service.parsers.registry import untrained
 from parser_service.runs.training.evaluating import BEAM_WIDTH
-from parser_service.serving.default_runs import answering_run
+from parser_service.serving.answerer import Answerer
 from parser_service.serving.line_files import answer_file, require_utf8
 from parser_service.serving.lines import LineAnswer
-from parser_service.serving.loading import load_parser, make_untrained
 from parser_service.serving.metrics import Metrics
-from parser_service.serving.parse_answers import ask
 from parser_service.serving.preparing import require_utterance
-from parser_service.serving.shelf import ServedParser, Shelf
+from parser_service.serving.shelf import Shelf
 
 STANDARD_INPUT = "-"
 
 
 class Command(ReportingCommand):
     help = (
-        "Parse an utterance, or every line of a file, with the parser that answers in a world, with that of a run, or "
-        "with one that needs no run."
+        "Parse an utterance, or every line of a file, as a robot would: the grammar oracle answers first, then the "
+        "promoted run. A run or a parser that needs none can be asked alone."
     )
 
     def add_options(self, parser: CommandParser) -> None:
@@ -50,7 +45,7 @@ class Command(ReportingCommand):
         who.add_argument(
             "--run",
             type=int,
-            help="number of a succeeded run (default: the promoted run, else the best)",
+            help="number of a succeeded run that answers alone (default: the oracle, then the promoted run)",
         )
         who.add_argument(
             "--parser",
@@ -70,30 +65,28 @@ class Command(ReportingCommand):
         if file not in (None, STANDARD_INPUT):
             require_utf8(Path(file))
         found = find_world(world)
-        run = None if options["parser"] else find_run(found, options["run"])
+        # Nobody else waits: a language model may take as long as it needs.
+        shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
+        answerer = shelf.load(found.name, options["run"], options["parser"] or "")
         if file is not None:
-            # Nobody else waits: a language model may take as long as it needs.
-            shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
-            service = shelf.load(found.name, run.pk if run else None, options["parser"] or "")
-            self._answer_file(service, file, options["beam"], options["json"])
+            self._answer_file(answerer, file, options["beam"], options["json"])
             return None
-        parser = load_parser(run).hesitant() if run else make_untrained(options["parser"], found)
-        answers = ask(parser, found, utterance, options["beam"]).as_json()
-        about = {"world": found.name, "run": run.pk if run else None, "parser": parser.name}
-        return {**about, "score_kind": str(parser.score_kind or ""), **answers}
+        [answer] = answerer.parse([utterance], options["beam"])
+        report: Mapping[str, Any] = json.loads(answer)
+        return report
 
-    def _answer_file(self, service: ServedParser, name: str, beam: int, as_json: bool) -> None:
+    def _answer_file(self, answerer: Answerer, name: str, beam: int, as_json: bool) -> None:
         """Print the answer to each line of a file as soon as it is there.
 
         Raises Refusal at the end where some lines could not be parsed.
         """
-        blank = json.loads(service.write(service.heard_nothing()))
+        blank = json.loads(answerer.write(answerer.heard_nothing()))
         faults: list[LineAnswer] = []
         count = 0
         is_standard = name == STANDARD_INPUT
         with open(0 if is_standard else name, "rb", closefd=not is_standard) as lines:
             try:
-                for answers in answer_file(service, lines, beam):
+                for answers in answer_file(answerer, lines, beam):
                     for each in answers:
                         self.stdout.write(self._say(each, blank, as_json))
                     self.stdout.flush()
@@ -138,13 +131,3 @@ def _say_plan(candidate: Mapping[str, Any]) -> list[str]:
         return []
     steps = [f"{each['number']:8}  {call(each)}" for each in plan["steps"]]
     return [candidate["spoken"], *steps, *(each["message"] for each in plan["problems"])]
-
-
-def find_run(world: World, number: int | None) -> TrainingRun:
-    """Return run ``number`` of ``world``, or the one that answers there. Raises Refusal where there is none."""
-    if number is None:
-        return answering_run(world)
-    run = world.runs.filter(pk=number).first()
-    if run is None:
-        raise Refusal(f"There is no run {number} in {world}.", "no_such_run", HTTPStatus.NOT_FOUND)
-    return run

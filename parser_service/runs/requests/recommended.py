@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from django.db.models import Case, Count, Exists, OuterRef, Value, When
+from django.db.models import Case, Exists, OuterRef, Value, When
 
-from annotations.language.corpus import Criterion, Part
+from annotations.language.corpus import Criterion, Overlap, Part, together
 from annotations.models import Entity, Example, Split, World
 from annotations.models.splits import Source
+from annotations.splits.overlaps import form_counts, overlaps_of
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES
 from parser_service.parsers.pretrained_files import Gap, find_gaps
 from parser_service.parsers.recommendation import Recommendation, TrainingMaterial, recommend
@@ -39,12 +41,14 @@ def usual_split(world: World) -> Split | None:
 
 @dataclass(frozen=True, slots=True)
 class SplitContents:
-    """The pairs of a split: those to train on by their source, and how many the other parts have."""
+    """The pairs of a split: those to train on by their source, how many the other parts have, and, by source, how much
+    of the validation part training has."""
 
     split: Split
     train: Counter[str] = field(default_factory=Counter)
     validation: int = 0
     test: int = 0
+    overlaps: Mapping[str, Overlap] = field(default_factory=dict)
 
     @property
     def by_source(self) -> list[tuple[str, int]]:
@@ -55,18 +59,24 @@ class SplitContents:
             if self.train[source]
         ]
 
+    @property
+    def of_new_forms(self) -> int:
+        """How many validation pairs have a form that no training pair has."""
+        return together(self.overlaps.values()).examples_of_new_forms
+
 
 def contents_of(split: Split) -> SplitContents:
-    """Count the pairs of a split. One query."""
-    rows = split.examples.order_by().values_list("part", "source").annotate(Count("pk"))
+    """Count the pairs of a split. Two queries."""
     train: Counter[str] = Counter()
     others: Counter[str] = Counter()
-    for part, source, count in rows:
+    counts = form_counts(split)
+    for (part, source, _), count in counts.items():
         if part == Part.TRAIN:
             train[source] += count
         else:
             others[part] += count
-    return SplitContents(split, train, others[Part.VALIDATION], others[Part.TEST])
+    overlaps = overlaps_of(split, counts)
+    return SplitContents(split, train, others[Part.VALIDATION], others[Part.TEST], overlaps)
 
 
 def material_of(world: World, contents: SplitContents | None) -> TrainingMaterial:
@@ -79,7 +89,7 @@ def material_of(world: World, contents: SplitContents | None) -> TrainingMateria
         generated=train[Source.GENERATED],
         paraphrases=train.total() - train[Source.GENERATED],
         has_ontology=Entity.objects.filter(ontology__world=world).exists(),
-        criterion=Criterion(contents.split.criterion) if contents else Criterion.COMMAND,
+        overlaps=contents.overlaps if contents else {},
         trained=frozenset(trained.distinct()),
     )
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from hashlib import sha256
+from collections.abc import Iterator, Sequence
 
+from parser_service.analysis.clustered import folds_of
 from parser_service.parsers.interface import Pair, Parser
 
 FOLDS = 2
@@ -26,7 +26,7 @@ def calibrated_folds(
         calibrating: the validation pairs that calibrated ``parser``, [pairs].
         clusters: that of each of them, [pairs].
     """
-    folds = folds_of([*asked, *clusters])
+    folds = folds_of([*asked, *clusters], FOLDS)
     if not folds or not calibrating or parser.calibrated(calibrating[:1]) is parser:
         yield parser, list(range(len(asked)))
         return
@@ -39,13 +39,3 @@ def calibrated_folds(
         places = [at for at, cluster in enumerate(asked) if folds[cluster] == fold]
         if places:
             yield parser.calibrated(others), places
-
-
-def folds_of(clusters: Iterable[str]) -> dict[str, int]:
-    """Return cluster → its fold, 0 or 1, each with half of the clusters (one more in fold 0 where they are odd).
-
-    The order is that of their SHA-256, so that it depends on nothing but the clusters. Where there is
-    a single one there is nothing to calibrate on, and no fold.
-    """
-    ordered = sorted(set(clusters), key=lambda each: (sha256(each.encode()).digest(), each))
-    return {each: at % FOLDS for at, each in enumerate(ordered)} if len(ordered) > 1 else {}

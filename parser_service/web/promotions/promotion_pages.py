@@ -1,4 +1,4 @@
-"""Which run answers in a world: the evidence for it, what may take its place, and the history."""
+"""Which run is the learned part of what answers: the evidence for it, what may take its place, and the history."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from parser_service.models import Promotion, TrainingRun
+from parser_service.parsers.registry import untrained
 from parser_service.promotions.promoting import (
     MOST_REASON,
     decline,
+    is_learned,
+    learned_part,
     previous_run,
     promote,
-    promoted_run,
     roll_back,
 )
-from parser_service.promotions.score_evidence import compare_scores, spoken_score
+from parser_service.promotions.score_evidence import compare_scores, judged_by
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
 
 MOST_LISTED = 100  # runs that may be promoted, and decisions of the history
@@ -55,7 +57,9 @@ def promotions(request: WorldRequest, world: World) -> HttpResponse:
         "present": present,
         "present_scores": compare_scores(run, None) if run else [],
         "previous": previous_run(world),
+        "present_learns": bool(run and is_learned(run)),
         "chosen": chosen if chosen != run else None,
+        "chosen_learns": bool(chosen and is_learned(chosen)),
         "chosen_scores": compare_scores(chosen, run) if chosen else [],
         "proposals": [(each, compare_scores(each.run, run)) for each in proposals],
         "candidates": candidates,
@@ -98,8 +102,8 @@ def promotion_decline(request: WorldRequest, world: World, pk: int) -> HttpRespo
 @never_cache
 @world_view(Duty.VIEW)
 def parser_state(request: WorldRequest, world: World) -> HttpResponse:
-    """Say which run the parse server answers with: a part of other pages, which ask for it by themselves."""
-    context: dict[str, Any] = {"promoted": promoted_run(world)}
+    """Say which run the parse server has as the learned part: a part of other pages, which ask for it by themselves."""
+    context: dict[str, Any] = {"promoted": learned_part(world)}
     try:
         held = {each["world"]: each for each in client().parsers()}
         context["held"] = held.get(world.name, {})
@@ -117,14 +121,15 @@ def _decide(request: WorldRequest, world: World, verb: Callable[[], object]) -> 
 
 
 def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:
-    """Return the runs that may be promoted, those that are most often right on paraphrases first."""
-    runs = world.runs.succeeded().on_all_pairs().for_table()
+    """Return the runs that may be promoted, those that are most often right first, on what people say where
+    they were asked enough of it."""
+    runs = world.runs.succeeded().on_all_pairs().for_table().exclude(parser__in=untrained())
     if present:
         runs = runs.exclude(pk=present.pk)
     listed = list(runs.order_by("-pk")[:MOST_LISTED])
 
     def accuracy(run: TrainingRun) -> float:
-        score = spoken_score(run)
-        return score.accuracy if score else -1.0
+        scores = judged_by(run)
+        return scores[0].accuracy if scores else -1.0
 
     return sorted(listed, key=accuracy, reverse=True)

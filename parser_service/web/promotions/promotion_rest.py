@@ -1,4 +1,4 @@
-"""Which run answers in a world: what was decided and proposed, and the verbs that decide."""
+"""Which run is the learned part of what answers: what was decided and proposed, and the verbs that decide."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ class PromotionSerializer(serializers.ModelSerializer[Promotion]):
 
 
 class NewPromotion(Fields):
-    """The run that is to answer from now on."""
+    """The run that is to be the learned part of what answers."""
 
     run = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
     reason = serializers.CharField(max_length=MOST_REASON, allow_blank=True, default="")
 
 
 class RollBackReason(Fields):
-    """Why the run before is to answer again."""
+    """Why the run before is to be the learned part again."""
 
     reason = serializers.CharField(max_length=MOST_REASON, allow_blank=True, default="")
 
@@ -63,7 +63,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
     @extend_schema(request=NewPromotion, responses={201: PromotionSerializer})
     @once
     def create(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Lets a run answer from now on."""
+        """Makes a run the learned part of what answers: it is asked where the grammar oracle is silent."""
         sent = self.read(NewPromotion)
         run = get_object_or_404(self.world.runs.select_related("world"), pk=sent["run"])
         row = promote(run, request.user, sent["reason"])
@@ -73,7 +73,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
     @action(detail=False, methods=["post"], url_path="roll-back")
     @once
     def roll_back(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Lets the run answer again that did before the present one."""
+        """Makes the run before the present one the learned part again."""
         reason = self.read(RollBackReason)["reason"]
         row = roll_back(self.world, request.user, reason)
         return Response(self.get_serializer(row).data, status=HTTPStatus.CREATED)
@@ -81,7 +81,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
     @extend_schema(request=None, responses={200: PromotionSerializer})
     @action(detail=True, methods=["post"])
     def decline(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Declines a proposal; the present run goes on answering."""
+        """Declines a proposal; the present run stays the learned part."""
         row = self.get_object()
         decline(self.world, row.pk, request.user)
         return Response(self.get_serializer(self.get_object()).data)

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import csv
+from typing import Any
 
+from django.contrib import messages
 from django.http import HttpResponse, JsonResponse
-from django.shortcuts import render
+from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.exporting.split_export import formula_safe
+from annotations.language.errors import Refusal
 from annotations.models import Duty, World
-from annotations.people.access import WorldRequest, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
+from parser_service.results.answerer_rows import answerer_tables
 from parser_service.results.export import HEADER, as_json, rows_of
 from parser_service.results.latex import as_latex
+from parser_service.results.measuring_job import request_measurement
 from parser_service.results.result_choices import read_choices, scored_splits
 
 
 @world_view(Duty.VIEW)
 def results(request: WorldRequest, world: World) -> HttpResponse:
     """Show the accuracy tables, one per protocol."""
-    return render(request, "parser_service/results/results.html", results_of(request, world))
+    context = results_of(request, world)
+    context["answerer"] = answerer_tables(world, context["chosen"], context["part"])
+    return render(request, "parser_service/results/results.html", context)
 
 
 @never_cache
@@ -27,6 +34,19 @@ def results(request: WorldRequest, world: World) -> HttpResponse:
 def results_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the tables alone; the page refreshes itself with them."""
     return render(request, "parser_service/results/_results_table.html", results_of(request, world))
+
+
+@world_view(Duty.REVIEW, WRITE)
+def results_measure(request: WorldRequest, world: World) -> HttpResponse:
+    """Start to measure what a robot gets, or show the measurement that waits or runs."""
+    key = request.POST.get("split", "")
+    split = get_object_or_404(world.splits, pk=key) if key.isdecimal() else None
+    try:
+        job = request_measurement(world, request.user, split)
+    except Refusal as refusal:
+        messages.error(request, refusal.message)
+        return redirect("results", world=world.name)
+    return redirect("job", pk=job.pk)
 
 
 @world_view(Duty.VIEW)
@@ -68,7 +88,7 @@ def as_attachment(world: World, ending: str) -> dict[str, str]:
     return {"Content-Disposition": f'attachment; filename="{world.name}-results.{ending}"'}
 
 
-def results_of(request: WorldRequest, world: World) -> dict[str, object]:
+def results_of(request: WorldRequest, world: World) -> dict[str, Any]:
     """Return the tables that the address chooses, and its choices."""
     splits = scored_splits(world)
     choices = read_choices(request.GET, world, splits)

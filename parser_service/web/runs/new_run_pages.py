@@ -205,9 +205,9 @@ def query_of(posted: Mapping[str, str], parser: str, shown: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ParserOption:
-    """One parser. ``expected`` is what was measured of it elsewhere; ``seconds`` the median time of its finished
+    """One parser. ``expected`` is what to expect of it on the split; ``seconds`` the median time of its finished
     runs here, None before the first; ``scores`` its best accuracies on the validation part, by source; ``gaps``
-    the weights, or the server, that are not there."""
+    the weights, or the server, that are not there. Where there are scores, they are shown instead of what to expect."""
 
     name: str
     entry: RegistryEntry
@@ -239,7 +239,7 @@ class ParserPicker:
 
 
 def picker_of(world: World, split: Split | None, chosen: str = "") -> ParserPicker:
-    """Return the parsers to choose from for ``split``, on which accuracies are. Five queries."""
+    """Return the parsers to choose from for ``split``, on which accuracies are. Six queries."""
     seconds, scores = _seconds(world), _scores(world, split)
     contents = contents_of(split) if split else None
     material, gaps = material_of(world, contents), gaps_of_parsers()

@@ -17,7 +17,7 @@ from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.analyses.state import analysis_of
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS, title_of
-from parser_service.promotions.promoting import promoted_run
+from parser_service.promotions.promoting import is_learned, learned_part
 from parser_service.results.learning_curves import curves_url
 from parser_service.results.run_figures import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.results.table_parts import marked
@@ -60,7 +60,11 @@ def run(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one run: progress, curves, log and results."""
     context = state_of(world, pk)
     context["newest"], context["again"] = retrained(context["run"])
-    context["is_promoted"] = promoted_run(world) == context["run"]
+    shown = context["run"]
+    context["is_promoted"] = is_promoted = learned_part(world) == shown
+    context["may_be_promoted"] = (
+        shown.status == Status.SUCCEEDED and is_learned(shown) and not is_promoted
+    )
     return render(request, "parser_service/runs/run.html", context)
 
 

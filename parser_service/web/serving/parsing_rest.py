@@ -33,7 +33,7 @@ from annotations.web.rest.streaming import JSON_LINES, BrokenOff
 from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client
-from parser_service.serving.preparing import MOST_CANDIDATES, numbered_lines
+from parser_service.serving.preparing import MOST_ALTERNATIVES, MOST_CANDIDATES, numbered_lines
 
 MOST_LINES = 5_000  # of a batch that is answered at once
 SHARE_OF_TIME = 0.8  # of REQUEST_SECONDS; then a last line says that the batch breaks off
@@ -59,30 +59,48 @@ class JsonLinesParser(BaseParser):
         return bytes(stream.read())
 
 
-class ParseQuery(Fields):
-    """What to parse, in at most ``beam`` ways; ``run`` asks another parser than the promoted one."""
+class AskedParser(serializers.Serializer[Any]):
+    """In how many ways to parse, and whom to ask: what answers in the world, or one parser alone."""
 
-    utterance = serializers.CharField(max_length=MOST_CHARACTERS, trim_whitespace=False)
-    beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
-    run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
-
-
-class BatchQuery(serializers.Serializer[Any]):
-    """The same for JSON lines, in the address."""
-
-    beam = serializers.IntegerField(default=5, min_value=1, max_value=MOST_CANDIDATES)
-    run = serializers.IntegerField(default=None, min_value=1, max_value=MOST_KEY, allow_null=True)
-
-
-class JobQuery(BatchQuery):
-    """The same for a job; ``parser`` asks one that needs no run, made of what the world says when the job begins."""
-
-    parser = serializers.ChoiceField(choices=untrained(), default="")
+    beam = serializers.IntegerField(
+        default=5, min_value=1, max_value=MOST_CANDIDATES, help_text="The most candidates."
+    )
+    run = serializers.IntegerField(
+        default=None,
+        min_value=1,
+        max_value=MOST_KEY,
+        allow_null=True,
+        help_text="Ask the parser of this run alone.",
+    )
+    parser = serializers.ChoiceField(
+        choices=untrained(), default="", help_text="Ask this parser alone. It needs no run."
+    )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs["run"] and attrs["parser"]:
             raise ValidationError("Name a run or a parser, not both.")
         return attrs
+
+
+class AlternativeSerializer(Fields):
+    """What a recogniser may have heard, with its score: a probability, or the logarithm of one."""
+
+    utterance = serializers.CharField(max_length=MOST_CHARACTERS, trim_whitespace=False)
+    score = serializers.FloatField(default=0.0)
+
+
+class ParseQuery(AskedParser, Fields):
+    """An utterance, or the ``alternatives`` of a recogniser, of which the best that is understood is answered."""
+
+    utterance = serializers.CharField(
+        max_length=MOST_CHARACTERS, trim_whitespace=False, default="", allow_blank=True
+    )
+    alternatives = AlternativeSerializer(many=True, default=list, max_length=MOST_ALTERNATIVES)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if bool(attrs["utterance"].strip()) == bool(attrs["alternatives"]):
+            raise ValidationError({"utterance": "Send an utterance or alternatives."})
+        return super().validate(attrs)
 
 
 class SpanSerializer(serializers.Serializer[Any]):
@@ -112,6 +130,23 @@ class OpenSlotSerializer(serializers.Serializer[Any]):
     phrases = serializers.ListField(child=serializers.CharField())
 
 
+class HeardChangeSerializer(serializers.Serializer[Any]):
+    """What was heard otherwise than it was said, in the characters ``start`` to ``end`` of the utterance."""
+
+    kind = serializers.CharField(help_text="Such as filler, repair, sound or spelling.")
+    start = serializers.IntegerField()
+    end = serializers.IntegerField()
+    said = serializers.CharField(allow_blank=True, help_text="Empty where something was left out.")
+    heard = serializers.CharField(allow_blank=True, help_text="Empty where it was passed over.")
+
+
+class ReasonSerializer(serializers.Serializer[Any]):
+    """Why the robot does not act at once."""
+
+    code = serializers.CharField(help_text="For programs: unknown_word, forbidden, left_out, …")
+    message = serializers.CharField()
+
+
 class CandidateSerializer(serializers.Serializer[Any]):
     """A form, with class tokens and with the entities of the utterance (``grounded``)."""
 
@@ -134,12 +169,14 @@ class CandidateSerializer(serializers.Serializer[Any]):
     )
 
 
-class ParseSerializer(serializers.Serializer[Any]):
-    """The answer to an utterance; candidates are ranked, the best first."""
+class OneAnswerSerializer(serializers.Serializer[Any]):
+    """The answer to one command; candidates are ranked, the best first."""
 
     world = serializers.CharField()
-    run = serializers.IntegerField()
-    parser = serializers.CharField()
+    run = serializers.IntegerField(
+        allow_null=True, help_text="The run that answered; null where the grammar oracle did."
+    )
+    parser = serializers.CharField(help_text="The part that answered.")
     score_kind = serializers.CharField()
     utterance = serializers.CharField()
     anonymized = serializers.CharField()
@@ -148,11 +185,45 @@ class ParseSerializer(serializers.Serializer[Any]):
     is_unknown = serializers.BooleanField()
     is_cut = serializers.BooleanField(help_text="The parser read only the beginning.")
     warnings = serializers.ListField(child=serializers.CharField())
+    agrees = serializers.BooleanField(
+        allow_null=True,
+        help_text="Whether the other part gives the same form; null where it was not asked or is silent.",
+    )
+    heard = HeardChangeSerializer(many=True)
+    probability = serializers.FloatField(
+        allow_null=True,
+        help_text="That the answer is right, 0 to 1; null where nothing was understood.",
+    )
+    decision = serializers.ChoiceField(
+        choices=["act", "confirm", "ask", "refuse"],
+        help_text="What a robot may do: only with act it goes on without a word of the person.",
+    )
+    sureness = serializers.CharField(help_text="How sure the answer is, in words.")
+    spoken = serializers.CharField(
+        allow_blank=True,
+        help_text="What the robot says by the decision: what it does, or a question.",
+    )
+    reasons = ReasonSerializer(many=True)
+    nearest = serializers.ListField(
+        child=serializers.CharField(), help_text="Commands that are near, where it refuses."
+    )
     candidates = CandidateSerializer(many=True)
 
 
+class ParseSerializer(OneAnswerSerializer):
+    """The answer to an utterance. Where it holds several commands, the candidate does one after the other."""
+
+    several = OneAnswerSerializer(
+        many=True, help_text="The answer to each command, where there are several."
+    )
+    joint_plan = serializers.DictField(
+        allow_null=True,
+        help_text="One plan of all of them, as docs/reference/recipes.md describes it.",
+    )
+
+
 class ParseRoute(APIView):
-    """Parses an utterance, or JSON lines with one each, with the promoted parser of the world."""
+    """Parses an utterance, or JSON lines with one each, with what answers in the world."""
 
     permission_classes = [HasDuty]
     parser_classes = [BoundedJSONParser, JsonLinesParser]
@@ -168,6 +239,9 @@ class ParseRoute(APIView):
                 "beam", OpenApiTypes.INT, description="Of JSON lines: candidates each."
             ),
             OpenApiParameter("run", OpenApiTypes.INT, description="Of JSON lines: the run to ask."),
+            OpenApiParameter(
+                "parser", OpenApiTypes.STR, description="Of JSON lines: the parser to ask."
+            ),
         ],
         request={"application/json": ParseQuery, JSON_LINES: OpenApiTypes.STR},
         responses={
@@ -187,7 +261,7 @@ class ParseRoute(APIView):
         return Response(client().parse(self.world.name, **query.validated_data))
 
     def _answer_lines(self, request: ApiRequest, lines: bytes) -> HttpResponseBase:
-        query = BatchQuery(data=request.query_params)
+        query = AskedParser(data=request.query_params)
         query.is_valid(raise_exception=True)
         count = len(numbered_lines(lines))
         if count > MOST_LINES:
@@ -217,13 +291,13 @@ class ParseJobs(WorldRoute):
 
     @extend_schema(
         operation_id="start_parse",
-        parameters=[JobQuery],
+        parameters=[AskedParser],
         request={JSON_LINES: OpenApiTypes.STR},
         responses={202: JobSerializer},
     )
     @once
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
-        query = JobQuery(data=request.query_params)
+        query = AskedParser(data=request.query_params)
         query.is_valid(raise_exception=True)
         if not isinstance(request.data, bytes) or not request.data.strip():
             raise ValidationError("There is no line to parse.")

@@ -190,7 +190,7 @@ def test_what_is_generated_is_understood_with_and_without_its_entities():
 
 def test_there_are_some_hundreds_of_forms_and_they_fit_the_predicates():
     forms = {each.form_text for each in sample().expansions}
-    assert 300 < len(forms) < 700
+    assert 800 < len(forms) < 1_100
     inferred = infer_signatures(map(read_form, forms))
     assert set(inferred) == set(predicates())
     for form in forms:

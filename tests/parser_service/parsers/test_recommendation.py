@@ -1,4 +1,4 @@
-"""Which parser is recommended with what a world has; rules and figures are those of the docs' table."""
+"""Which parser is recommended with what a split holds; the figures are those of the docs' table."""
 
 from __future__ import annotations
 
@@ -7,43 +7,64 @@ from pathlib import Path
 
 import pytest
 
-from annotations.language.corpus import Criterion
+from annotations.language.corpus import FormOverlap, Overlap
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.recommendation import (
-    EXPECTED,
-    ON_NEW_FORMS,
-    RANKER,
+    MEASURED,
     TrainingMaterial,
     expectation_of,
     recommend,
 )
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.published import published_accuracy
 
 DOCS = Path(__file__).resolve().parents[3] / "docs/design/parsers.md"
 DOMAIN, STRICT = Protocol.DOMAIN, Protocol.STRICT
-FORM, SOURCE = Criterion.LOGICAL_FORM, Criterion.SOURCE_COMMAND
 LINEAR = frozenset({"linear"})
 
 
-def material(generated=800, paraphrases=1200, has_ontology=True, **others) -> TrainingMaterial:
-    return TrainingMaterial(generated, paraphrases, has_ontology, **others)
+def asked(known: int, new: int = 0, taught: int = 12, new_commands: int = 0) -> Overlap:
+    """What is asked of a source: each form once, ``known`` of them with ``taught`` training pairs."""
+    forms = (FormOverlap(1, taught),) * known + (FormOverlap(1, 0),) * new
+    return Overlap(forms, new_commands)
+
+
+def material(
+    commands=800, paraphrases=1200, has_ontology=True, trained=frozenset(), **by_source: Overlap
+) -> TrainingMaterial:
+    return TrainingMaterial(commands, paraphrases, has_ontology, by_source, trained)
+
+
+FULL = {"generated": asked(100), "paraphrased": asked(100)}
+THIRD = {"generated": asked(60, 30), "paraphrased": asked(10, 5)}
+NONE = {"generated": asked(0, 80), "paraphrased": asked(0, 20)}
+# A sample of a competition's language: few pairs of each of many forms.
+SAMPLE = {"generated": asked(191, 9, taught=2), "paraphrased": asked(25, taught=4)}
 
 
 @pytest.mark.parametrize(
     ("has", "lacking", "expected"),
     [
         (material(30, 10), (), ("knn", STRICT)),
+        (material(30, 10, **NONE), (), ("ranker", DOMAIN)),
         (material(30, 10, trained=frozenset({"knn"})), (), ("linear", DOMAIN)),
         (material(), (), ("linear", DOMAIN)),
-        (material(has_ontology=False), (), ("linear", STRICT)),
-        (material(trained=LINEAR), (), ("ranker", STRICT)),
-        (material(trained=LINEAR, paraphrases=0), (), ("ranker", DOMAIN)),
-        (material(trained=LINEAR, paraphrases=0, has_ontology=False), (), ("ranker", STRICT)),
-        (material(trained=LINEAR, criterion=SOURCE), (), ("ranker", DOMAIN)),
-        (material(trained=LINEAR), {"ranker"}, ("linear", DOMAIN)),
-        (material(criterion=FORM), (), ("ranker", DOMAIN)),
-        (material(criterion=FORM), {"ranker"}, ("seq2seq", STRICT)),
+        (material(**FULL), (), ("linear", DOMAIN)),
+        (material(has_ontology=False, **FULL), (), ("linear", STRICT)),
+        (material(trained=LINEAR, **FULL), (), ("ranker", STRICT)),
+        (material(trained=LINEAR, **FULL), {"ranker"}, ("linear", DOMAIN)),
+        (material(trained=LINEAR, paraphrases=0, **FULL), (), ("ranker", DOMAIN)),
+        (material(paraphrases=0, has_ontology=False, trained=LINEAR), (), ("ranker", STRICT)),
+        (
+            material(trained=LINEAR, paraphrased=asked(100, new_commands=100)),
+            (),
+            ("ranker", DOMAIN),
+        ),
+        (material(**THIRD), (), ("ranker", DOMAIN)),
+        (material(**NONE), (), ("ranker", DOMAIN)),
+        (material(**NONE), {"ranker"}, ("seq2seq", STRICT)),
+        (material(1400, 172, **SAMPLE), (), ("ranker", DOMAIN)),
+        (material(1400, 172, **SAMPLE), {"ranker"}, ("seq2seq", STRICT)),
+        (material(1400, 0, generated=SAMPLE["generated"]), (), ("ranker", DOMAIN)),
     ],
 )
 def test_the_parser_follows_from_what_there_is(has, lacking, expected):
@@ -53,57 +74,82 @@ def test_the_parser_follows_from_what_there_is(has, lacking, expected):
     assert advice.reason.endswith(".")
 
 
-def test_it_never_recommends_what_lacks_something():
-    for trained in (frozenset(), LINEAR):
-        for criterion in Criterion:
-            has = material(criterion=criterion, trained=trained)
-            assert recommend(has, {"ranker"}).parser != "ranker"
+@pytest.mark.parametrize("overlaps", [FULL, THIRD, NONE, SAMPLE, {}])
+@pytest.mark.parametrize("trained", [frozenset(), LINEAR])
+def test_it_never_recommends_what_lacks_something(overlaps, trained):
+    assert recommend(material(trained=trained, **overlaps), {"ranker"}).parser != "ranker"
+
+
+@pytest.mark.parametrize("overlaps", [THIRD, NONE])
+@pytest.mark.parametrize("lacking", [(), {"ranker"}])
+def test_where_a_third_is_new_no_parser_of_known_forms_is_recommended(overlaps, lacking):
+    for pairs in (50, 1000):
+        advice = recommend(material(pairs, pairs, **overlaps), lacking)
+        assert PARSERS[advice.parser].writes_new_forms
+
+
+def test_a_parser_of_known_forms_is_expected_to_be_right_on_those_alone():
+    for name in ("knn", "linear"):
+        full, third, none = (expectation_of(name, material(**each)) for each in (FULL, THIRD, NONE))
+        assert (none.generated, none.said) == (0, 0)
+        assert third.generated == pytest.approx(full.generated * 2 / 3)
+        assert third.said == pytest.approx(full.said * 2 / 3)
+
+
+def test_few_pairs_of_a_form_are_expected_to_teach_little():
+    expected = expectation_of("linear", material(1400, 172, **SAMPLE))
+    assert expected.generated < 0.2 < 0.7 < expected.said
+    assert expected.accuracy == "12 % of generated commands; 76 % of what people say"
+    assert expectation_of("ranker", material(1400, 172, **SAMPLE)).generated > 0.9
+
+
+def test_paraphrases_to_learn_from_raise_what_to_expect_of_people():
+    shares = [
+        expectation_of("ranker", material(paraphrases=count, **FULL)).said
+        for count in (0, 100, 200, 5000)
+    ]
+    assert shares == [pytest.approx(each) for each in (0.71, 0.795, 0.88, 0.88)]
+    others = material(paraphrased=asked(100, new_commands=100))
+    assert expectation_of("ranker", others).said == pytest.approx(0.74)
+
+
+def test_without_a_word_of_people_generated_commands_say_which_forms_they_ask_for():
+    said = expectation_of("linear", material(generated=asked(50, 50))).said
+    assert said == pytest.approx(0.4)
+    assert expectation_of("linear", material()).said == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize("parser", PARSERS)
+@pytest.mark.parametrize("overlaps", [FULL, THIRD, NONE, SAMPLE, {}])
+def test_what_to_expect_is_a_share(parser, overlaps):
+    expected = expectation_of(parser, material(**overlaps))
+    for share in (expected.generated, expected.said) if expected else ():
+        assert share is None or 0 <= share <= 1
 
 
 def rows_of_the_docs() -> dict[str, list[str]]:
-    """Parser → the accuracies that "Which row to take" gives for it."""
+    """Parser → the cells that "What to expect" gives for it."""
     text = DOCS.read_text(encoding="utf-8")
-    table = text.partition("## Which row to take")[2].partition("## ")[0]
-    rows: dict[str, list[str]] = {}
-    for line in table.splitlines():
-        cells = [cell.strip() for cell in line.split("|")]
-        if len(cells) > 4 and (named := re.match(r"`([\w-]+)`", cells[3])):
-            rows.setdefault(named[1], []).append(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", cells[4]))
-    return rows
+    table = text.partition("## What to expect")[2].partition("The first four")[0]
+    rows = re.findall(r"^\| `([\w-]+)` \| (.*) \|$", table, re.MULTILINE)
+    return {name: [cell.strip() for cell in cells.split("|")] for name, cells in rows}
 
 
 def test_what_pages_expect_is_what_the_docs_say():
     rows = rows_of_the_docs()
-    expected = {name: [each.accuracy] for name, each in EXPECTED.items() if name in rows}
-    expected["ranker"] = list(RANKER.values())
-    assert rows.keys() == expected.keys()
-    for name, said in expected.items():
-        assert [each.replace(" %", "") for each in said] == rows[name], name
+    assert rows.keys() == MEASURED.keys()
+    for name, measured in MEASURED.items():
+        shares = (
+            measured.said,
+            measured.from_generated,
+            measured.other_commands,
+            measured.new_forms,
+        )
+        cells = ["–" if share is None else f"{100 * share:.0f}" for share in shares]
+        by_pairs = ", ".join(f"{least}: {100 * share:.0f}" for least, share in measured.generated)
+        assert rows[name] == [*cells, by_pairs or "–"], name
 
 
-@pytest.mark.parametrize(
-    ("has", "figure"),
-    [
-        (material(paraphrases=0), "71 %"),
-        (material(), "86 to 89 %"),
-        (material(criterion=SOURCE), "74 %"),
-        (material(criterion=FORM), "61 %"),
-    ],
-)
-def test_what_to_expect_of_the_ranker_depends_on_the_split(has, figure):
-    assert expectation_of("ranker", has).accuracy.startswith(figure)
-
-
-def test_by_form_nothing_is_expected_of_a_parser_that_answers_known_forms_alone():
-    for name, entry in PARSERS.items():
-        if not entry.writes_new_forms:
-            expected = expectation_of(name, material(criterion=FORM))
-            assert expected.accuracy == "0 % on unseen forms"
-
-
-def test_by_form_the_papers_figure_stands_in_for_what_was_not_measured_here():
-    for name, expected in ON_NEW_FORMS.items():
-        assert expectation_of(name, material(criterion=FORM)).accuracy == expected
-        if expected.endswith(" in the paper"):
-            theirs = published_accuracy(name, ("gen+para", "para"), FORM)
-            assert expected.startswith(f"{theirs:.0f} % ")
+def test_a_parser_that_writes_no_new_form_is_right_on_none():
+    for name, measured in MEASURED.items():
+        assert measured.new_forms == 0 or PARSERS[name].writes_new_forms

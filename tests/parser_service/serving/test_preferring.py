@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from annotations.language.forms import canonical_text, read_form
@@ -9,7 +11,9 @@ from annotations.language.ontology import Entity, Ontology
 from annotations.models.splits import Criterion
 from annotations.worlds.starter_world import load_starter_world
 from parser_service.parsers.interface import Candidate, ScoreKind
-from parser_service.serving.parse_answers import parse, read_answers
+from parser_service.serving.metrics import Metrics
+from parser_service.serving.parse_answers import read_answers
+from parser_service.serving.shelf import Shelf
 from tests.parser_service.served import trained_run
 from tests.parser_service.serving.test_answer_writing import compare, language_of
 
@@ -135,8 +139,9 @@ def test_the_writer_orders_alike(language):
 def test_in_the_starter_world_what_can_be_done_comes_first(db, parser, protocol, text):
     split = load_starter_world(lambda sentence: None)[Criterion.COMMAND]
     run = trained_run(split, parser=parser, protocol=protocol, train_sources="gen+para")
-    best = parse(run, text).answers[0]
-    assert best.open_slots == ()
-    assert best.plan["is_executable"]
-    assert '"hammer"' in best.grounded.replace(" ", "")
-    assert "kitchen" in best.grounded
+    answerer = Shelf(0, Metrics()).load(run.world.name, run.pk)
+    best = json.loads(answerer.parse([text], 5)[0])["candidates"][0]
+    assert best["open_slots"] == []
+    assert best["plan"]["is_executable"]
+    assert '"hammer"' in best["grounded"].replace(" ", "")
+    assert "kitchen" in best["grounded"]

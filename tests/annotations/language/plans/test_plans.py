@@ -17,6 +17,7 @@ from annotations.language.plans import (
     ActionName,
     Described,
     Plan,
+    Robust,
     Trouble,
     behavior_tree_schema_text,
     make_plan,
@@ -43,6 +44,7 @@ def plan_of(text: str, **options: Any) -> Plan:
 def require_valid(plan: Plan) -> None:
     JSON_SCHEMA.validate(plan.as_json())
     XML_SCHEMA.validate(to_behavior_tree(plan))
+    XML_SCHEMA.validate(to_behavior_tree(plan, Robust()))
 
 
 def troubles(plan: Plan) -> list[str]:
@@ -219,11 +221,10 @@ def test_an_entity_that_the_ontology_does_not_have_is_named() -> None:
         (["cabinet", "Trash Bin"], "Trash Bin", None),
         (["sink", "trash"], "trash", None),
         (["cabin", "binder shelf"], None, None),
-        (
-            ["trash bin", "sofa", "waste basket"],
-            None,
-            "Which one do you mean: the trash bin or the waste basket?",
-        ),
+        (["garbage bin", "trash bin", "sofa"], "trash bin", None),
+        (["trashcan", "waste basket"], "trashcan", None),
+        (["trash bin", "kitchen trash can"], None, "the trash bin or the kitchen trash can"),
+        (["waste basket", "sofa", "dustbin"], None, "the waste basket or the dustbin"),
     ],
 )
 def test_the_trash_is_the_place_with_a_word_for_it_in_its_name(
@@ -242,7 +243,7 @@ def test_the_trash_is_the_place_with_a_word_for_it_in_its_name(
         for step in plan.steps
         if step.predicate == ASK
     ]
-    assert asked == [question] * (question is not None)
+    assert asked == [f"Which one do you mean: {question}?"] * (question is not None)
     if meant:
         room = rooms[locations.index(meant)]["room"]
         assert destination == entity("location", meant, room=room)
@@ -262,7 +263,10 @@ def test_a_superlative_needs_a_set() -> None:
 
 
 def test_a_description_alone_is_nothing_to_do() -> None:
-    assert troubles(plan_of('(λ$1:e (is_a $1 "tea") (at $1 "stool"))')) == [Trouble.NO_ACTION]
+    plan = plan_of('(λ$1:e (is_a $1 "tea") (at $1 "stool"))')
+    assert [(each.trouble, each.step) for each in plan.problems] == [(Trouble.NO_ACTION, 0)]
+    assert [each.predicate for each in plan.steps] == [ASK]
+    assert said_in(plan, 0, "expects")["text"] == "command"
 
 
 def test_a_likely_entity_is_to_be_confirmed() -> None:
@@ -292,11 +296,65 @@ def test_the_behaviour_tree_has_ports_that_the_library_takes() -> None:
     action = tree.find("BehaviorTree/Sequence/Action")
     assert action.get("ID") == "say"
     assert action.get("text") == "(x) <b> & c"  # braces would be an entry of the blackboard
-    assert action.get("listener").startswith('json:{"kind":"description"')
+    assert action.get("listener") == "Ada"
     assert [port.get("name") for port in tree.findall("TreeNodesModel/Action/input_port")] == [
         "text",
         "listener",
     ]
+
+
+PORTS = {
+    '(is_a $1 "tea")': "tea",
+    '(is_a $1 "drinks")': "drinks",
+    '(is_a $1 "gizmo")': "gizmo",  # nothing of the ontology
+    '(person $1) (name $1 "Ada")': "Ada",
+    "(person $1)": "person",
+    '(is_a $1 "tea") (at $1 "stool")': "",
+    '(right_of $1 (λ$2:e (is_a $2 "tea")))': "",
+    "(largest $1)": "",
+    '(person $1) (gesture $1 "waving their hand")': "",
+}
+
+
+@pytest.mark.parametrize("robust", [None, Robust(2, 1.5)])
+@pytest.mark.parametrize("said", PORTS)
+def test_a_thing_of_which_only_the_noun_is_said_is_a_port_with_that(
+    said: str, robust: Robust | None
+) -> None:
+    plan = plan_of(f"(find (λ$1:e {said}))")
+    (action,) = (
+        each
+        for each in fromstring(to_behavior_tree(plan, robust)).iter("Action")
+        if each.get("ID") == "find" and each.get("name")
+    )
+    port = action.get("target")
+    assert port == PORTS[said] if PORTS[said] else port.startswith('json:{"kind":"description"')
+
+
+def test_it_is_a_port_with_the_noun_of_what_it_stands_for() -> None:
+    plan = plan_of('(sequence (find (λ$1:e (is_a $1 "tea"))) (take it))')
+    assert 'thing="tea"' in to_behavior_tree(plan)
+
+
+def test_a_robust_tree_tries_each_step_again_and_hands_on_what_fails() -> None:
+    plan = plan_of('(sequence (go "attic") (bring (λ$1:e (is_a $1 "tea"))) (say (count UNKNOWN)))')
+    xml = to_behavior_tree(plan, Robust(4, 2.5, "Give Up"))
+    XML_SCHEMA.validate(xml)
+    tree = fromstring(xml)
+    steps = tree.findall("BehaviorTree/Sequence/Fallback")
+    assert len(steps) == len(plan.steps)
+    flat = fromstring(to_behavior_tree(plan)).findall("BehaviorTree/Sequence/Action")
+    for step, number, alone in zip(steps, range(1, len(steps) + 1), flat, strict=True):
+        retry, failed = step
+        assert (retry.tag, retry.attrib) == ("RetryUntilSuccessful", {"num_attempts": "4"})
+        (timeout,) = retry
+        assert (timeout.tag, timeout.attrib) == ("Timeout", {"msec": "2500"})
+        (action,) = timeout
+        assert action.attrib == alone.attrib
+        assert (failed.get("ID"), failed.get("number")) == ("Give_Up", str(number))
+        assert failed.get("text") in alone.get("name")
+    nodes = {each.get("ID") for each in tree.findall("TreeNodesModel/Action")}
+    assert {each.get("ID") for each in tree.iter("Action")} == nodes
 
 
 def test_a_long_sequence_is_cut_and_said() -> None:

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from annotations.language.forms import read_form
-from annotations.language.plans import TAKEN_NAMES, make_plan, to_behavior_tree
+from annotations.language.plans import TAKEN_NAMES, Robust, make_plan, to_behavior_tree
 from annotations.language.plans.behavior_tree import Steps
 from annotations.language.recipes import apply_recipes, join, read_book, shipped_books
 from tests.annotations.language.recipes.test_task_plans import WORLDS, plans_of
@@ -128,3 +128,28 @@ def test_every_node_of_the_library_is_known_to_be_taken():
     for name in sorted(TAKEN_NAMES - OF_OLDER):
         with pytest.raises(RuntimeError, match="already registered"):
             factory.register_simple_action(name, lambda node: bt.NodeStatus.SUCCESS)
+
+
+def test_the_library_tries_a_step_again_and_hands_on_what_fails():
+    book = shipped_books()["primitives"].book
+    plan = apply_recipes(make_plan(read_form('(find (λ$1:e (is_a $1 "tea")) "attic")'), HOME), book)
+    root = ElementTree.fromstring(to_behavior_tree(plan, Robust(3, 5.0)))
+    for action in root.iter("Action"):
+        for port in action.attrib.keys() - {"ID", "name"}:
+            del action.attrib[port]
+    done: list[str] = []
+
+    def tick(name: str, succeeds_at: int):
+        def act(node) -> object:
+            done.append(name)
+            is_done = done.count(name) >= succeeds_at
+            return bt.NodeStatus.SUCCESS if is_done else bt.NodeStatus.FAILURE
+
+        return act
+
+    factory = bt.BehaviorTreeFactory()
+    for name, succeeds_at in (("go_to", 2), ("find_object", 9), ("step_failed", 1)):
+        factory.register_simple_action(name, tick(name, succeeds_at))
+    tree = factory.create_tree_from_text(ElementTree.tostring(root, encoding="unicode"))
+    assert tree.tick_while_running() == bt.NodeStatus.SUCCESS
+    assert done == ["go_to"] * 2 + ["find_object"] * 3 + ["step_failed"]

@@ -14,10 +14,13 @@ from hypothesis import strategies as st
 
 from annotations.language.plans import behavior_tree_schema_text, to_behavior_tree
 from annotations.language.recipes import (
+    AFTER_COMMANDS,
     Distances,
     EffectKind,
     JointPlan,
+    NoteKind,
     Reason,
+    RecipeBook,
     RecipeTrouble,
     TaskPlan,
     TaskStep,
@@ -27,6 +30,8 @@ from annotations.language.recipes import (
     join,
     joint_plan_schema,
     joint_plan_schema_text,
+    read_book,
+    say_length,
     spoken,
 )
 from annotations.language.recipes.situation import Place, Somewhere
@@ -41,6 +46,18 @@ TEA = '(λ$1:e (is_a $1 "tea") (at $1 "attic"))'
 KNIFE = '(λ$1:e (is_a $1 "knife") (at $1 "attic"))'
 ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
 COUNT = '(say (count (λ$1:e (is_a $1 "drinks") (at $1 "{}"))))'
+
+
+BOOK = default_book()
+WITHOUT_WAY_BACK = RecipeBook(
+    BOOK.primitives,
+    tuple(each for each in BOOK.recipes if each.pattern.action != AFTER_COMMANDS),
+)
+PRIMITIVES = "\n".join(map(str, BOOK.primitives))
+
+
+def notes_of(joint: JointPlan, code: NoteKind) -> list[tuple[int, ...]]:
+    return [each.commands for each in joint.notes if each.code is code]
 
 
 def joined(*forms: str, distances: Distances | None = None) -> JointPlan:
@@ -71,7 +88,7 @@ OPERATOR = task_plan('(bring (λ$1:e (is_a $1 "tea")))').steps[0].place
 
 def test_a_place_is_visited_once_for_two_commands():
     joint = joined(f'(put {TEA} "tea room")', '(go "tea room")', COUNT.format("attic"))
-    assert joint.length == 6 and joint.length_before == 8
+    assert (joint.length, joint.length_before) == (3, 4)  # in rooms; it ends where it began
     shared = [each for each in joint.interleavings if each.reason is Reason.SHARED_VISIT]
     assert [each.commands for each in shared] == [(1, 3), (1, 2)]
     assert "attic" in shared[0].message and "tea room" in shared[1].message
@@ -80,7 +97,7 @@ def test_a_place_is_visited_once_for_two_commands():
 
 def test_the_robot_comes_back_once_to_tell_two_results():
     joint = joined(COUNT.format("attic"), COUNT.format("stool"))
-    assert (joint.length_before, joint.length) == (8, 5)
+    assert (joint.length_before, joint.length) == (4, 2.5)
     assert calls(joint.plan).count("go_to(operator)") == 1
     reasons = [each.reason for each in joint.interleavings]
     assert reasons == [Reason.SHARED_VISIT, Reason.SAME_ROOM, Reason.SHORTER]
@@ -96,7 +113,7 @@ def test_who_is_guided_somewhere_shares_the_way_there():
 
 def test_one_thing_is_carried_at_a_time():
     joint = joined(f"(bring {TEA})", f"(bring {KNIFE})")
-    assert joint.length == joint.length_before == 8
+    assert joint.length == joint.length_before == 4
     assert codes(joint.plan) == []
     assert not joint.interleavings
 
@@ -105,7 +122,8 @@ def test_a_command_that_keeps_what_it_takes_comes_last():
     joint = joined(f"(take {TEA})", f"(bring {KNIFE})")
     assert [each.commands for each in joint.interleavings] == [(1, 2)]
     assert joint.interleavings[0].reason is Reason.HANDS
-    assert joint.plan.steps[-1].action == "pick_up" and codes(joint.plan) == []
+    assert [each.action for each in joint.plan.steps[-2:]] == ["pick_up", "go_to"]
+    assert codes(joint.plan) == []
 
 
 def test_two_commands_that_keep_things_are_a_problem():
@@ -116,9 +134,9 @@ def test_two_commands_that_keep_things_are_a_problem():
 def test_somebody_who_has_a_name_is_found_once():
     joint = joined(f'(say "a joke" {ADA})', f"(greet {ADA})")
     assert " ".join(calls(joint.plan)) == (
-        "go_to(stool) find_person(Ada) say(a joke, Ada) greet(Ada)"
+        "go_to(stool) find_person(Ada) say(a joke, Ada) greet(Ada) go_to(operator)"
     )
-    assert joint.serves == ((1, 2), (1, 2), (1,), (2,))
+    assert joint.serves == ((1, 2), (1, 2), (1,), (2,), (1, 2))
 
 
 def test_two_people_and_two_things_in_the_same_words_are_found_twice():
@@ -260,8 +278,8 @@ def test_a_joint_plan_is_never_longer_than_one_command_after_the_other(forms):
 @given(several)
 def test_one_command_alone_stays_as_it_is(forms):
     plan = task_plan(forms[0])
-    joint = joined(forms[0])
-    assert calls(joint.plan) == calls(plan)
+    joint = join([plan], WITHOUT_WAY_BACK)
+    assert calls(joint.plan) == calls(plan) == calls(joined(forms[0]).plan)[: len(plan.steps)]
     assert [each.requires for each in joint.plan.steps] == [each.requires for each in plan.steps]
     assert joint.plan.problems == plan.problems and not joint.interleavings
 
@@ -290,10 +308,10 @@ def shortest(plans: list[TaskPlan], distances: Distances) -> float | None:
 
     @cache
     def rest(done: tuple[int, ...], last: int) -> float:
-        if done == goal:
-            return 0.0
-        best = float("inf")
         here = places[last][done[last]] if last >= 0 else OPERATOR
+        if done == goal:
+            return distances.between(here, OPERATOR)
+        best = float("inf")
         for command, plan in enumerate(plans):
             if done[command] == goal[command]:
                 continue
@@ -347,7 +365,136 @@ def test_very_long_commands_are_done_one_after_the_other():
 
 
 def test_what_is_wrong_with_one_command_is_said_of_its_steps():
-    joint = joined('(go "attic")', "UNKNOWN")
+    joint = joined('(go "attic")', "(go UNKNOWN)")
     (problem,) = joint.plan.problems
     assert joint.serves[problem.step - 1] == (2,)
     assert [each["commands"] for each in joint.as_json()["problems"]] == [[2]]
+
+
+@given(several)
+def test_the_robot_ends_where_the_commands_were_given(forms):
+    joint = joined(*forms)
+    assert joint.ends_at == OPERATOR
+    assert places_after(joint.plan.steps)[-1] == OPERATOR
+    without = join([task_plan(form) for form in forms], WITHOUT_WAY_BACK)
+    assert without.ends_at is None and without.length <= joint.length
+
+
+def test_the_way_back_decides_the_order():
+    """Either order is as long up to the last place; the way back from there is not."""
+    table = {
+        ("operator", "attic"): 5.0,
+        ("operator", "tea room"): 6.0,
+        ("attic", "tea room"): 9.0,
+        ("operator", "stool"): 1.0,
+        ("attic", "stool"): 6.0,
+        ("tea room", "stool"): 2.0,
+    }
+    forms = [f'(go "{each}")' for each in ("stool", "attic", "tea room")]
+    joint = joined(*forms, distances=Distances(table))
+    assert joint.length == 17  # attic, tea room, stool; or back
+    assert joint.length_before == 22
+    assert calls(joint.plan)[-1] == "go_to(operator)"
+
+
+def test_a_book_names_another_place_to_end_at():
+    rows = [str(each) for each in WITHOUT_WAY_BACK.recipes]
+    rows.append('after_commands() -> go_to("the instruction point") say("I am done")')
+    book, problems = read_book(PRIMITIVES, "\n".join(rows))
+    assert not [each for each in problems if each.is_error]
+    distances = Distances({("instruction point", "attic"): 4.0, ("operator", "attic"): 3.0})
+    joint = join([task_plan('(go "attic")'), task_plan(COUNT.format("attic"))], book, distances)
+    assert calls(joint.plan)[-2:] == ["go_to(instruction point)", "say(I am done)"]
+    assert joint.as_json()["ends_at"]["text"] == "the instruction point"
+    JSON_SCHEMA.validate(joint.as_json())
+    # The count is told to the operator, and the instruction point is nowhere near in the table.
+    assert joint.length == 3 + 3 + 4
+
+
+@pytest.mark.parametrize("missed", [0, 1, 2])
+def test_two_of_three_are_done_where_one_is_not_understood(missed):
+    forms, said = ['(go "attic")', COUNT.format("attic"), f"(greet {ADA})"], ["ab", "cd", "ef"]
+    forms[missed] = "UNKNOWN"
+    plans = [task_plan(form) for form in forms]
+    joint = join(plans, default_book(), utterances=said)
+    assert joint.plan.is_executable and "ask_operator" not in " ".join(calls(joint.plan))
+    assert {number for each in joint.serves for number in each} == {1, 2, 3} - {missed + 1}
+    note = joint.notes[0]
+    assert (note.code, note.commands) == (NoteKind.NOT_UNDERSTOOD, (missed + 1,))
+    assert f"“{said[missed]}”" in note.message and joint.spoken.startswith(note.message)
+    assert ("first", "second", "third")[missed] in note.message
+    JSON_SCHEMA.validate(joint.as_json())
+
+
+def test_where_none_is_understood_each_is_asked_about():
+    plans = [task_plan("UNKNOWN"), task_plan(TEA), task_plan("UNKNOWN")]
+    joint = join(plans, default_book(), utterances=["ab", "cd", "ef"])
+    assert not joint.plan.is_executable and joint.length == 0
+    questions = [step.arguments[0][1].as_json()["text"] for step in joint.plan.steps]
+    for question, (ordinal, said) in zip(
+        questions, (("first", "ab"), ("second", "cd"), ("third", "ef")), strict=True
+    ):
+        assert ordinal in question and f"“{said}”" in question
+
+
+def test_a_part_that_is_not_understood_says_of_which_command_it_is():
+    plans = [task_plan('(go "attic")'), task_plan('(sequence (go "stool") UNKNOWN)')]
+    joint = join(plans, default_book(), utterances=["ab", "cd"])
+    (asked,) = (each for each in joint.plan.steps if each.action == "ask_operator")
+    question = asked.arguments[0][1].as_json()["text"]
+    assert "second" in question and "“cd”" in question
+    assert not joint.plan.is_executable
+    alone = join(plans[1:], default_book()).plan
+    assert "I did not understand that. What shall I do?" in spoken(alone)
+
+
+def test_commands_that_bring_no_points_for_interleaving_are_named():
+    apart = joined('(go "attic")', '(go "stool")')
+    assert not apart.is_interleaved and apart.as_json()["interleaved"] == []
+    assert notes_of(apart, NoteKind.NOT_INTERLEAVED) == [(1, 2)]
+    one_apart = joined(COUNT.format("attic"), f"(bring {TEA})", '(go "tea room")')
+    assert one_apart.interleaved == ((1, 2),)
+    assert notes_of(one_apart, NoteKind.NOT_INTERLEAVED) == [(3,)]
+    together = joined(COUNT.format("attic"), COUNT.format("stool"))
+    assert together.interleaved == ((1, 2),)
+    assert not notes_of(together, NoteKind.NOT_INTERLEAVED)
+    asked_first = joined('(go "attic")', "(go UNKNOWN)")
+    assert not asked_first.is_interleaved
+    assert not notes_of(joined('(go "attic")'), NoteKind.NOT_INTERLEAVED)
+
+
+@given(several)
+def test_commands_in_turn_are_not_interleaved(forms):
+    joint = joined(*forms)
+    own = [
+        commands
+        for step, commands in zip(joint.plan.steps, joint.serves, strict=True)
+        if step.source and step.action != "ask_operator"
+    ]
+    served = [number for each in own for number in each]
+    is_in_turn = all(len(each) == 1 for each in own) and len([*groupby(served)]) == len({*served})
+    assert joint.is_interleaved is not is_in_turn
+
+
+def test_the_walk_has_a_unit():
+    near = {("operator", "attic"): 1.25, ("operator", "tea room"): 1.0}
+    forms = COUNT.format("attic"), COUNT.format("tea room")
+    assert joined(*forms).unit == "rooms"
+    assert joined(*forms, distances=Distances(near)).unit == "m"
+    in_feet = Distances.of_rows([("operator", "attic", 3.0)], unit="ft")
+    assert joined(*forms, distances=in_feet).as_json()["unit"] == "ft"
+    assert [say_length(each, "rooms") for each in (1, 0, 2.5)] == ["1 room", "0 rooms", "2.5 rooms"]
+    assert say_length(1234567.25, "m") == "1234567.2 m"
+
+
+def test_the_robot_changes_between_commands_as_little_as_it_can():
+    """What the first command keeps is taken last; all else of it is as well done right before."""
+    forms = f"(sequence (bring {TEA}) (take {KNIFE}))", f"(bring {KNIFE})"
+    joint = joined(*forms)
+    in_turn = [commands for commands, _ in groupby(joint.serves[:-1])]
+    assert in_turn == [(2,), (1,)]
+
+
+def test_of_equal_orders_the_earlier_command_comes_first():
+    joint = joined(f"(take {TEA})", f"(bring {KNIFE})", f"(bring {TEA})")
+    assert [each for each, _ in groupby(joint.serves[:-1])] == [(2,), (3,), (1,)]

@@ -18,12 +18,12 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
     ("form", "sentence"),
     [
         ('(go "attic")', "go to the attic."),
-        (f"(bring {TEA})", "go to the attic, find a tea, and bring it to you."),
+        (f"(bring {TEA})", "go to the attic, find a tea, take it, and bring it to you."),
         (
             f'(sequence (go "attic") (find {TEA}) (bring it))',
-            "go to the attic, find a tea, and bring it to you.",
+            "go to the attic, find a tea, take it, and bring it to you.",
         ),
-        (f'(put {TEA} "stool")', "go to the attic, find a tea, and put it on the stool."),
+        (f'(put {TEA} "stool")', "go to the attic, find a tea, take it, and put it on the stool."),
         (
             f"(bring {TEA} {ADA})",
             "go to the attic, find a tea, take it, go to the stool, find Ada, and give it to them.",
@@ -61,7 +61,7 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
         ),
         (
             "(bring UNKNOWN)",
-            "ask you “What shall I bring you?”, find the thing that you name, and bring it to you.",
+            "ask you “What shall I bring you?”, find the thing that you name, take it, and bring it to you.",
         ),
         ("(go UNKNOWN)", "ask you “Where shall I go?” and go to the destination that you name."),
         (
@@ -78,7 +78,10 @@ def test_a_plan_is_one_sentence(form, sentence):
 @pytest.mark.parametrize(
     ("forms", "sentence"),
     [
-        ((f"(take {TEA})", f"(take {TEA})"), "find a tea, take it, find another tea, and take it."),
+        (
+            (f"(take {TEA})", f"(take {TEA})"),
+            "find a tea, take it, find another tea, take it, and come back to you.",
+        ),
         (  # what the robot tells could be "it" too
             ('(say (count (λ$1:e (is_a $1 "cookies") (at $1 "attic"))))', f"(bring {TEA})"),
             "tell you the number of the cookies, and give the tea to you.",

@@ -77,9 +77,24 @@ def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_s
     assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
 
 
-def test_the_picker_costs_five_queries(sample, django_assert_num_queries):
-    with django_assert_num_queries(5):
+def test_the_picker_costs_six_queries(sample, django_assert_num_queries):
+    with django_assert_num_queries(6):
         picker_of(sample.world, sample.split)
+
+
+def test_figures_of_here_stand_instead_of_what_to_expect(sample, second_split, adam):
+    """A page that says both says two things of one parser."""
+    for split, is_expected in ((sample.split, False), (second_split, True)):
+        page = words_of(adam.get(NEW, {"split": split.pk}))
+        card = page.partition('id="parser-knn"')[2].partition("</label>")[0]
+        assert ("Expect" in card) == is_expected
+
+
+def test_the_page_says_how_much_of_validation_training_does_not_have(sample, adam):
+    contents = adam.get(NEW).context["picker"].contents
+    validation = sample.split.examples.filter(part="validation")
+    train = sample.split.examples.filter(part="train").values("logical_form")
+    assert contents.of_new_forms == validation.exclude(logical_form__in=train).count() > 0
 
 
 def test_choices_survive_a_change_of_parser_without_scripts(sample, second_split, adam):

@@ -7,8 +7,9 @@ from functools import cache
 
 from spellchecker import SpellChecker
 
-from annotations.language.paraphrases.word_folding import folded_words
+from annotations.language.english.word_folding import folded_words
 
+COMMON = 100  # times that pyspellchecker's list, made of subtitles, counts a word that is not rare
 _LONGEST_MENDED = 20  # letters of a word for which corrections are looked for
 
 
@@ -34,6 +35,11 @@ class KnownWords:
             return own[0]
         known = sorted(_english().known(close))
         return max(known, key=_english().word_usage_frequency, default=None)
+
+
+def is_common(word: str) -> bool:
+    """Return whether a folded word is English and no rare one: a misspelt word is often the same as such."""
+    return len(word) == 1 or word in _CONTRACTED or _english().word_frequency[word] >= COMMON
 
 
 # What an apostrophe leaves of a word.

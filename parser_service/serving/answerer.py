@@ -1,0 +1,559 @@
+"""What a world answers: its grammar oracle first, then its learned parser, then a question or UNKNOWN.
+
+An utterance that the oracle understands as it is written needs no other part. Where the oracle is silent, hears
+something else than what is written, or reads it in several ways, the learned part is asked too. Every answer gets a
+probability, and from that a decision (``analysis.sureness``).
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from http import HTTPStatus
+from math import log, prod
+from typing import TYPE_CHECKING, Any, cast
+
+from annotations.language.dialogue import shall_i
+from annotations.language.errors import Refusal
+from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
+from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader
+from annotations.language.recipes import MOST_COMMANDS, join, spoken
+from annotations.language.requests import (
+    Fit,
+    Objection,
+    best_alternative,
+    best_fitting,
+    exchange,
+    fit,
+    objections,
+    stopped_by,
+    with_entities,
+)
+from parser_service.analysis.sureness import (
+    AnsweredForm,
+    AnsweringPart,
+    Decision,
+    Evidence,
+    in_words,
+)
+from parser_service.parsers.interface import UNKNOWN, Candidate, Parser, ScoreKind
+from parser_service.parsers.several import pieces_of
+from parser_service.serving.answer_writing import AnswerWriter
+from parser_service.serving.batching import Batcher
+from parser_service.serving.calibrating import Calibrated
+from parser_service.serving.joint_answers import understood
+from parser_service.serving.parse_answers import (
+    ParsedUtterance,
+    Reading,
+    as_json,
+    form_of,
+    is_cut_in,
+    unknown_tokens,
+)
+from parser_service.serving.remote import RemoteAsker, Unanswered
+
+if TYPE_CHECKING:
+    from parser_service.parsers.oracle import GrammarOracle
+
+USUAL_BEAM = 5
+LINES_TOGETHER = 32  # of a request of many lines
+NOT_UNDERSTOOD = "I did not understand that."
+_NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
+_CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
+LEAST_LOG = -700.0  # of a probability that is 0
+
+
+class NotServed(Refusal):
+    """A request that cannot be answered, with its HTTP status and a sentence."""
+
+    code = "not_served"
+
+    def __init__(self, status: int, sentence: str) -> None:
+        super().__init__(sentence, status=status)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedParser:
+    """A parser in memory. ``knowledge`` is what of its world it was loaded with; ``lines_together`` is how many
+    lines of a longer request it is given at once. ``run`` is None for a parser that needs none."""
+
+    run: int | None
+    name: str
+    score_kind: str
+    knowledge: tuple[object, ...]
+    size: int
+    batcher: Batcher | RemoteAsker
+    lines_together: int = LINES_TOGETHER
+    parser: Parser | None = None
+
+    def ask(self, texts: Sequence[str], beam: int) -> list[list[Candidate]]:
+        """Return the candidates of each text. Raises NotServed where it asks a server that does not answer in time."""
+        try:
+            return self.batcher.ask(texts, beam)
+        except Unanswered as error:
+            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message) from error
+
+
+@dataclass(frozen=True, slots=True)
+class PartAnswer:
+    """What one part answered to an utterance: ``text`` is what it was given. ``agrees`` says whether the other part
+    gives the same form; None where that was not asked or is silent. ``pieces`` are the answers to the commands of an
+    utterance that holds several."""
+
+    utterance: str
+    text: str
+    part: LoadedParser | None = None
+    candidates: Sequence[Candidate] = ()
+    agrees: bool | None = None
+    pieces: tuple[PartAnswer, ...] = ()
+    changes: tuple[HeardChange, ...] = ()
+
+    def said_in(self, utterance: str) -> PartAnswer:
+        """Return the same as the answer to an utterance that has this one inside."""
+        return replace(self, utterance=utterance)
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One answer of a world: the readings of its candidates, best first, how sure it is, and what to do with it.
+
+    ``several`` are the answers to the commands of an utterance that holds more than one.
+    """
+
+    given: PartAnswer
+    several: tuple[Answer, ...]
+    heard: Anonymized
+    readings: Sequence[Reading[str]]
+    about: AnsweredForm
+    probability: float | None
+    decision: Decision
+    reasons: tuple[Objection, ...]
+
+    @property
+    def is_unknown(self) -> bool:
+        """Whether there is nothing to act on: no form, or one that somebody did not ask for."""
+        return self.about.evidence is None or self.about.objections
+
+    @property
+    def changes(self) -> tuple[HeardChange, ...]:
+        """What was heard otherwise than it was said."""
+        best = next(iter(self.readings), None)
+        return (*self.given.changes, *(best.candidate.heard if best else ()))
+
+
+@dataclass(frozen=True, slots=True)
+class Answerer:
+    """The parts of a world and the writer of its answers. They answer a request and do not change meanwhile.
+
+    ``oracle`` answers first, ``learned`` where it is silent; at least one is there. ``problem`` says why the learned
+    part is missing, where it should be there.
+    """
+
+    world: str
+    writer: AnswerWriter
+    reader: HearingReader
+    oracle: LoadedParser | None = None
+    learned: LoadedParser | None = None
+    calibrated: Calibrated = field(default_factory=Calibrated)
+    problem: str = ""
+    wanted: Any = None  # what of the database it was made of (``shelf.WantedAnswerer``)
+
+    @property
+    def names(self) -> str:
+        """The names of the parts, in the order in which they answer."""
+        return ", ".join(part.name for part in (self.oracle, self.learned) if part)
+
+    @property
+    def run(self) -> int | None:
+        """The run of the learned part."""
+        return self.learned.run if self.learned else None
+
+    @property
+    def size(self) -> int:
+        """Bytes that the learned part takes."""
+        return self.learned.size if self.learned else 0
+
+    @property
+    def lines_together(self) -> int:
+        # The oracle looks at each line alone, so that several together would only come later.
+        return self.learned.lines_together if self.learned else 1
+
+    def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
+        """Return the answer to each utterance, as JSON. Raises as ``ask``."""
+        return [self.write(each) for each in self.ask(utterances, beam)]
+
+    def ask(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
+        """Return what the parts answer to each utterance. Raises NotServed where one asks a server that does not
+        answer in time."""
+        answers = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
+        answers = self._ask_learned(answers, beam)
+        return [self._cut_again(each, beam) for each in answers]
+
+    def ask_best(self, alternatives: Sequence[tuple[str, float]], beam: int) -> PartAnswer:
+        """Return the answer to the best of a recogniser's alternatives that is understood, or to the first; each has a
+        text and a score. Raises as ``ask``."""
+        texts = [text for text, _ in alternatives]
+        answers = dict(zip(texts, self.ask(texts, beam), strict=True))
+        best = (
+            0
+            if len(texts) == 1
+            else best_alternative(alternatives, lambda text: self._rate(answers[text]))
+        )
+        return answers[texts[best or 0]]
+
+    def _rate(self, given: PartAnswer) -> float | None:
+        """Return how well an utterance was understood, higher is better; None where it was not."""
+        answer = self.judge(given)
+        if answer.is_unknown or answer.probability is None:
+            return None
+        return log(answer.probability) - sum(
+            -each.score for each in given.candidates[:1] if given.part is self.oracle
+        )
+
+    def _ask_oracle(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
+        if self.oracle is None:
+            return [PartAnswer(each, each, self.learned) for each in utterances]
+        # Each alone: one takes milliseconds, and others may ask in between.
+        return [
+            PartAnswer(each, each, self.oracle, self.oracle.ask([each], beam)[0])
+            for each in utterances
+        ]
+
+    def _ask_learned(self, answers: list[PartAnswer], beam: int) -> list[PartAnswer]:
+        """Return the answers with what the learned part says where the oracle leaves a doubt."""
+        unsure = [at for at, each in enumerate(answers) if not _is_settled(each)]
+        if self.learned is None or not unsure:
+            return answers
+        # A learned parser is given the text without its noise.
+        cleaned = {at: self.reader.clean(answers[at].text) for at in unsure}
+        found = dict(
+            zip(
+                unsure,
+                self.learned.ask([each.text for each in cleaned.values()], beam),
+                strict=True,
+            )
+        )
+        return [
+            self._join(each, found[at], cleaned[at]) if at in found else each
+            for at, each in enumerate(answers)
+        ]
+
+    def _cut(self, given: PartAnswer, beam: int) -> PartAnswer:
+        """Return the answer with one for each command, where the oracle understands each and not all together."""
+        if given.candidates or self.oracle is None or not given.utterance.strip():
+            return given
+        pieces = pieces_of(given.utterance, self._grammar)
+        if not all(each.is_understood for each in pieces):
+            return given
+        texts = [each.text for each in pieces]
+        if len(texts) == 1:  # an announcement was taken off
+            return self._ask_oracle(texts, beam)[0].said_in(given.utterance)
+        return replace(given, pieces=tuple(self._ask_oracle(texts, beam)))
+
+    def _cut_again(self, given: PartAnswer, beam: int) -> PartAnswer:
+        """Return the answer with one for each command, where both parts together understand some of them and neither
+        understands all together, or the learned part leaves something out."""
+        if given.pieces or self.learned is None or given.part is not self.learned:
+            return given
+        evidence = self.judge(given).about.evidence
+        if evidence is not None and not evidence.left_out:
+            return given
+        pieces = pieces_of(given.utterance, self._grammar, self._judge)
+        is_better = all if evidence else any
+        if len(pieces) < 2 or not is_better(each.is_understood for each in pieces):
+            return given
+        alone = self._ask_oracle([each.text for each in pieces], beam)
+        return replace(given, pieces=tuple(self._ask_learned(alone, beam)))
+
+    @property
+    def _grammar(self) -> GrammarOracle | None:
+        return cast("GrammarOracle | None", self.oracle.parser if self.oracle else None)
+
+    def _judge(self, texts: Sequence[str]) -> list[float | None]:
+        """Return how well the learned part understands each text as one command; None for one that it does not."""
+        assert self.learned is not None
+        best = [next(iter(each), None) for each in self.learned.ask(texts, 1)]
+        return [None if each is None or each.form == UNKNOWN else each.score for each in best]
+
+    def heard_nothing(self) -> PartAnswer:
+        """Return what there is to write where nothing was said: no candidate, without asking any part."""
+        return PartAnswer("", "", self.oracle or self.learned)
+
+    def measure(self, utterances: Sequence[str]) -> list[AnsweredForm]:
+        """Return what is known of the answer to each utterance, with its share of the processor time."""
+        began = time.process_time()
+        answers = [self.judge(each).about for each in self.ask(utterances, USUAL_BEAM)]
+        seconds = (time.process_time() - began) / max(len(answers), 1)
+        return [replace(each, seconds=seconds) for each in answers]
+
+    def judge(self, given: PartAnswer) -> Answer:
+        """Return an answer with how sure it is."""
+        if given.pieces:
+            return self._judge_several(given)
+        heard = self.writer.language.anonymizer.anonymize(given.text)
+        score_kind = given.part.score_kind if given.part else ""
+        readings = self.writer.readings(heard, given.candidates, score_kind)
+        # What is no form is not shown.
+        readings = [each for each in readings if each.slots is not None]
+        fits, reasons = Fit(), ()
+        if given.part is self.learned:
+            reasons = objections(heard)
+            readings, fits = self._fit(readings, heard)
+        about = replace(self._about(given, readings, fits), objections=bool(reasons))
+        probability = None
+        if about.evidence is not None:
+            probability = self.calibrated.calibration.probability(about.evidence)
+        decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
+        if about.evidence is None:
+            reasons = (*reasons, *self._stopped_by(heard))
+        reasons = (*reasons, *_misfits(fits))
+        return Answer(given, (), heard, readings, about, probability, decision, reasons)
+
+    def _fit(
+        self, readings: Sequence[Reading[str]], heard: Anonymized
+    ) -> tuple[list[Reading[str]], Fit]:
+        """Return the readings of a learned parser in the order of how well they fit what was said, and the fit of the
+        first.
+
+        Where the words between say two slots the other way round and no reading has them so, the first is exchanged.
+        """
+        if not readings or readings[0].candidate.form == UNKNOWN:
+            return list(readings), Fit()
+        known = [each for each in readings if each.candidate.form != UNKNOWN]
+        others = [each for each in readings if each.candidate.form == UNKNOWN]
+        fits = [self._fit_of(each, heard) for each in known]
+        scores = [_log_probability(each.candidate.score, self.learned) for each in known]
+        scored = [(0.0 if of is None else of, fit) for of, fit in zip(scores, fits, strict=True)]
+        order = best_fitting(scored) if None not in scores else list(range(len(known)))
+        ordered, best = [known[at] for at in order] + others, fits[order[0]]
+        pair = next((each for each in best.exchanged if len(each.slots) == 2), None)
+        if pair is not None:
+            first = ordered[0]
+            form, values = exchange(_form(first), first.slots or (), pair)
+            turned = replace(first.candidate, form=canonical_text(form), values=values)
+            [reading] = self.writer.readings(heard, [turned], None)
+            fit = self._fit_of(reading, heard)
+            if not fit.exchanged:
+                return [reading, *ordered], replace(fit, exchanged=(pair,))
+        return ordered, best
+
+    def _fit_of(self, reading: Reading[str], heard: Anonymized) -> Fit:
+        language = self.writer.language
+        slots = reading.slots or ()
+        return fit(_form(reading), slots, heard, language.use, language.ontology)
+
+    def _stopped_by(self, heard: Anonymized) -> tuple[Objection, ...]:
+        language = self.writer.language
+        return stopped_by(heard, language.ontology, language.use.vocabulary)
+
+    def _judge_several(self, given: PartAnswer) -> Answer:
+        """Return the answer to several commands: as sure as all of them together, and as the least sure one decides.
+
+        Where all are understood, the one candidate does one after the other.
+        """
+        several = tuple(map(self.judge, given.pieces))
+        heard = self.writer.language.anonymizer.anonymize(given.utterance)
+        probabilities = [each.probability or 0.0 for each in several]
+        probability, readings, about = None, [], AnsweredForm()
+        if not any(each.is_unknown for each in several):
+            candidate = _sequence([each.readings[0] for each in several])
+            readings = self.writer.readings(heard, [candidate], "")
+            probability = prod(probabilities)
+            least = min(several, key=lambda each: each.probability or 0.0).about
+            about = replace(
+                least,
+                form=candidate.form,
+                open_slots=any(each.about.open_slots for each in several),
+                ambiguous=any(each.about.ambiguous for each in several),
+            )
+        decisions = {each.decision for each in several}
+        decision = next(each for each in _CAREFUL if each in decisions)
+        if decision is Decision.REFUSE:
+            decision = Decision.ASK  # the others can be done
+        return Answer(given, several, heard, readings, about, probability, decision, ())
+
+    def write(self, given: PartAnswer) -> str:
+        """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
+        answer = self.judge(given)
+        language = self.writer.language
+        said = language.anonymizer.anonymize(given.utterance)
+        warnings = unknown_tokens(given.utterance, language.ontology)
+        if self.problem:
+            warnings = (*warnings, self.problem)
+        parse = ParsedUtterance(said, given.text, (), warnings, is_cut_in(given.candidates))
+        part = given.part
+        first = json.loads(answer.readings[0].answer) if answer.readings else {}
+        said_by = self._spoken(answer, first)
+        head: dict[str, Any] = {
+            "world": self.world,
+            "run": part.run if part else None,
+            "parser": part.name if part else "",
+            "score_kind": part.score_kind if part else "",
+            **parse.as_json(),
+            "is_unknown": answer.is_unknown,
+            "agrees": given.agrees,
+            "heard": [asdict(each) for each in answer.changes],
+            "probability": answer.probability and round(answer.probability, 4),
+            "decision": answer.decision,
+            "sureness": in_words(answer.decision, answer.probability),
+            "spoken": said_by,
+            "reasons": [{"code": each.code, "message": each.message} for each in answer.reasons],
+            "nearest": self._nearest(answer),
+            "several": [],
+            "joint_plan": None,
+        }
+        if answer.several:
+            head |= self._together(answer)
+            said_by = head["spoken"]
+        del head["candidates"]
+        written = [each.answer for each in answer.readings]
+        if first.get("task_plan"):
+            written[0] = as_json(first | {"spoken": said_by})
+        return f'{as_json(head)[:-1]}, "candidates": [{", ".join(written)}]}}'
+
+    def _join(
+        self, by_oracle: PartAnswer, learned: Sequence[Candidate], cleaned: HeardText
+    ) -> PartAnswer:
+        """Return what both parts say together: the oracle's readings where it has some, the likeliest of equally good
+        ones first, else the learned answers."""
+        if not by_oracle.candidates:
+            return replace(
+                by_oracle,
+                text=cleaned.text,
+                part=self.learned,
+                candidates=learned,
+                changes=cleaned.changes,
+            )
+        best = [each for each in learned[:1] if each.form != UNKNOWN]
+        if not best:
+            return by_oracle
+        closest = by_oracle.candidates[0].score
+        equal = [each for each in by_oracle.candidates if each.score == closest]
+        same = [each for each in equal if _is_same(each, best[0])]
+        chosen = same + [each for each in by_oracle.candidates if each not in same]
+        return replace(by_oracle, candidates=chosen, agrees=bool(same))
+
+    def _about(
+        self, given: PartAnswer, readings: Sequence[Reading[str]], fits: Fit
+    ) -> AnsweredForm:
+        """Return what is known of the first reading, for the calibration and the decision."""
+        if not readings or readings[0].slots is None or readings[0].candidate.form == UNKNOWN:
+            return AnsweredForm()
+        best, part = readings[0], given.part
+        is_oracle = part is not None and part is self.oracle
+        scores = [_log_probability(each.candidate.score, part) for each in readings[:2]]
+        margin = scores[0] - scores[1] if None not in scores and len(scores) > 1 else None
+        evidence = Evidence(
+            part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
+            is_exact=is_oracle and best.candidate.score == 0,
+            heard_cost=-best.candidate.score if is_oracle else 0.0,
+            readings=sum(each.candidate.score == best.candidate.score for each in readings),
+            learned_log_probability=None if is_oracle else scores[0],
+            margin=margin,
+            agrees=given.agrees,
+            not_said=len(fits.not_said),
+            left_out=len(fits.left_out),
+            exchanged=bool(fits.exchanged),
+            executable=best.executable_plans > 0,
+        )
+        is_open = any(slot.value is None for slot in best.slots or ())
+        # Two names are equally near: "Hailey or Haley?"
+        rivals = {
+            each.candidate.values
+            for each in readings
+            if is_oracle and each.candidate.score == best.candidate.score and each.candidate.heard
+        }
+        is_ambiguous = len(rivals) > 1 and not given.agrees
+        return AnsweredForm(best.candidate.form, evidence, is_open, ambiguous=is_ambiguous)
+
+    def _together(self, answer: Answer) -> dict[str, Any]:
+        """Return what is said of several commands: the answer to each, and one plan of all."""
+        several = [json.loads(self.write(each)) for each in answer.given.pieces]
+        language = self.writer.language
+        plans = [understood(each, language).task_plan for each in several]
+        joint = join(plans, language.recipes) if len(plans) <= MOST_COMMANDS else None
+        questions = [each["spoken"] for each in several if each["decision"] != Decision.ACT]
+        said = next(iter(questions), spoken(joint.plan) if joint else "")
+        return {
+            "several": several,
+            "joint_plan": joint.as_json() if joint else None,
+            "spoken": said,
+        }
+
+    def _nearest(self, answer: Answer) -> list[str]:
+        """Return commands that are near an utterance that was not understood, with entities of the world."""
+        if not answer.is_unknown or answer.several or answer.given.part is None:
+            return []
+        language = self.writer.language
+        near = language.near.nearest(answer.heard)
+        return [with_entities(each, answer.heard, language.ontology) for each in near]
+
+    def _spoken(self, answer: Answer, first: dict[str, Any]) -> str:
+        """Return what the robot says by the decision. ``first`` is the JSON of the best candidate."""
+        match answer.decision:
+            case Decision.ACT:
+                return str(first["spoken"])
+            case Decision.CONFIRM:
+                return shall_i(first["english"])
+            case Decision.ASK:
+                asked = [slot["question"] for slot in first["open_slots"]]
+                asked += [each["message"] for each in first["plan"]["problems"]]
+                return next(iter(asked), shall_i(first["english"]))
+        told = [each.message for each in answer.reasons if each.code not in _OF_FIT]
+        return " ".join(told) or NOT_UNDERSTOOD
+
+
+def _is_settled(answer: PartAnswer) -> bool:
+    """Return whether the oracle understood an utterance as it is written, in one way, or its commands were answered."""
+    if answer.pieces or not answer.text.strip():
+        return True
+    scores = [each.score for each in answer.candidates]
+    return bool(scores) and scores[0] == 0 and scores.count(0) == 1
+
+
+def _misfits(fits: Fit) -> Iterator[Objection]:
+    """Yield what of a form does not fit what was said."""
+    for slot in fits.not_said:
+        noun = slot.entity_class
+        yield Objection(_NOT_SAID, f"You did not say which {noun}.", 0, 0)
+    for each in fits.left_out:
+        message = f"“{each.text}” is left out." if each.text else "The number is left out."
+        yield Objection(_LEFT_OUT, message, each.start, each.end)
+    for pair in fits.exchanged:
+        said = " and ".join(f"“{slot.filler}”" for slot in pair.slots)
+        yield Objection(_ROLES, f"It is not certain which is which: {said}.", 0, 0)
+
+
+def _form(reading: Reading[str]) -> Form:
+    form = form_of(reading.candidate.form)
+    assert form is not None
+    return form
+
+
+def _sequence(readings: Sequence[Reading[str]]) -> Candidate:
+    """Return the candidate that does what several say, one after the other."""
+    steps: list[Form] = []
+    values: list[str | None] = []
+    for reading in readings:
+        form = _form(reading)
+        is_sequence = isinstance(form, Application) and form.predicate == SEQUENCE
+        steps += form.arguments if is_sequence else (form,)
+        values += [slot.filler for slot in reading.slots or () if slot.entity_class]
+    return Candidate(canonical_text(Application(SEQUENCE, tuple(steps))), 0.0, values=tuple(values))
+
+
+def _is_same(one: Candidate, other: Candidate) -> bool:
+    first, second = form_of(one.form), form_of(other.form)
+    return first is not None and second is not None and equivalent(first, second)
+
+
+def _log_probability(score: float, part: LoadedParser | None) -> float | None:
+    """Return the score as the logarithm of a probability; None where it is none."""
+    kind = part.score_kind if part else ""
+    if kind == ScoreKind.LOG_PROBABILITY:
+        return min(score, 0.0)
+    if kind == ScoreKind.PROBABILITY:
+        return log(score) if score > 0 else LEAST_LOG
+    return None
