@@ -103,6 +103,7 @@ def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[P
 _WORD = re.compile(r"\w+(?:['’-]\w+)*")
 _CONTRACTED = re.compile(r"(?<!^let)['’](?:s|re|ve|ll|d|m)$")
 _SENTENCE_END = re.compile(r"[.!?…](?=\s|$)|[;\n]")
+_NUMBERED = re.compile(r"no\.?\s*\d", re.IGNORECASE)  # "task no. 2" forbids nothing
 _SIGN = re.compile(r"[^\w\s'’]")
 _AROUND = " \t\n.,;:!?"
 
@@ -228,10 +229,12 @@ class _Cut:
         """Return what is held back: from the words that do so to the end of the sentence, or all of it."""
         ranges: list[_Range] = []
         for held in holds_in(self.utterance):
+            if _NUMBERED.match(self.utterance, held.start):
+                continue
             word = bisect_right(self.starts, held.start) - 1
             first, last = self._sentence(word)
-            if held.code == Qualified.FORBIDDEN and self._is_parted(word):
-                first = word
+            if held.code == Qualified.FORBIDDEN:
+                first = next(each for each in range(word, -1, -1) if self._is_parted(each))
             if held.code == Qualified.TAKEN_BACK and first:
                 first, _ = self._sentence(first - 1)
             ranges.append(_Range(first, last, is_held=True))

@@ -201,7 +201,7 @@ TALK = {
     ],
     "Command one: bring me the cocoa": ["bring me the cocoa"],
     "My first and only task for you is: bring me the cocoa.": ["bring me the cocoa"],
-    "1. bring me the cocoa": ["bring me the cocoa"],
+    "1. bring me the cocoa": ["1. bring me the cocoa"],
     "yesterday my sister said that you bring me the cocoa": [],
     "I have three things for you.": [],
     "the weather is lovely today, is it not?": [],
@@ -225,7 +225,7 @@ TALK = {
         "greet Maria in the lobby",
     ],
     "she told me to bring me the cocoa and greet Maria in the lobby": [],
-    "not bring me the cocoa, greet Maria in the lobby": ["greet Maria in the lobby"],
+    "not bring me the cocoa, greet Maria in the lobby": [],
     "When Maria comes, greet Maria in the lobby. Bring me the cocoa.": ["bring me the cocoa"],
     "Water the flowers. Bring me the cocoa. Greet Maria in the lobby.": [
         "bring me the cocoa",
@@ -260,8 +260,14 @@ TALK = {
     ],
     "my brother always says: bring me the cocoa. And then he says: greet Maria in the lobby.": [],
     "greet Maria in the lobby, on second thought bring me the cocoa": [],
-    "bring me the cocoa. Wait, no. Greet Maria in the lobby.": ["greet Maria in the lobby"],
-    "why don't you bring me the cocoa and greet Maria in the lobby": [],
+    # The whole is heard as its end, which repairs its beginning.
+    "bring me the cocoa. Wait, no. Greet Maria in the lobby.": [
+        "bring me the cocoa. Wait, no. Greet Maria in the lobby."
+    ],
+    "why don't you bring me the cocoa and greet Maria in the lobby": [
+        "why don't you bring me the cocoa",
+        "greet Maria in the lobby",
+    ],
     "teach me how to bring me the cocoa, please. Also greet Maria in the lobby": [
         "greet Maria in the lobby"
     ],
