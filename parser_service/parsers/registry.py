@@ -65,7 +65,7 @@ PARSERS: dict[str, RegistryEntry] = {
         title="Grammar oracle",
         description="Chart-parses with the annotated grammar and returns the template's form. "
         "Learns nothing; has no answer outside the grammar.",
-        version=5,
+        version=6,
         protocols=(Protocol.GRAMMAR,),
         in_short="Reads a command of the annotated grammar; answers without a run. A run is for comparison alone.",
         needs=Needs.NOTHING,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from annotations.language.requests import Islands, Judge, Piece, cut, cut_at_joints
+from collections.abc import Iterator
+
+from annotations.language.requests import Islands, Judge, Piece, cut, cut_at_joints, sentences
 from parser_service.parsers.oracle import GrammarOracle
 
 MOST_REPAIRS = 10  # spans that looked like commands and were none
@@ -22,7 +24,7 @@ def pieces_of(
     if not utterance.strip():
         return ()
     if oracle is None:
-        return cut_at_joints(utterance, judge)
+        return tuple(piece for each in sentences(utterance) for piece in _cut_alone(each, judge))
     if oracle.understands(utterance):
         return (Piece(0, len(utterance), utterance, True),)
     islands = Islands()
@@ -33,6 +35,13 @@ def pieces_of(
         if pieces and all(each.is_understood for each in pieces):
             return pieces
     return _cut(utterance, islands, oracle, judge)[0] if judge else pieces
+
+
+def _cut_alone(sentence: Piece, judge: Judge | None) -> Iterator[Piece]:
+    """Yield the commands of a sentence, by a learned parser alone."""
+    for each in cut_at_joints(sentence.text, judge):
+        start, end = sentence.start + each.start, sentence.start + each.end
+        yield Piece(start, end, each.text, each.is_understood)
 
 
 def _cut(

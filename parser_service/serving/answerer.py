@@ -19,7 +19,7 @@ from annotations.language.dialogue import shall_i
 from annotations.language.errors import Refusal
 from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
 from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader
-from annotations.language.recipes import MOST_COMMANDS, join, spoken
+from annotations.language.recipes import MOST_COMMANDS, join
 from annotations.language.requests import (
     Fit,
     Objection,
@@ -72,8 +72,8 @@ class NotServed(Refusal):
 
     code = "not_served"
 
-    def __init__(self, status: int, sentence: str) -> None:
-        super().__init__(sentence, status=status)
+    def __init__(self, status: int, sentence: str, code: str = code) -> None:
+        super().__init__(sentence, code, status)
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,15 +244,22 @@ class Answerer:
 
     def _cut(self, given: PartAnswer, beam: int) -> PartAnswer:
         """Return the answer with one for each command, where the oracle understands each and not all together."""
-        if given.candidates or self.oracle is None or not given.utterance.strip():
+        if given.candidates or not given.utterance.strip():
             return given
         pieces = pieces_of(given.utterance, self._grammar)
-        if not all(each.is_understood for each in pieces):
-            return given
         texts = [each.text for each in pieces]
+        # Without a grammar, where sentences end is all that tells.
+        is_cut = (
+            len(texts) > 1 if self.oracle is None else all(each.is_understood for each in pieces)
+        )
+        if not is_cut:
+            return given
+        alone = self._ask_oracle(texts, beam)
         if len(texts) == 1:  # an announcement was taken off
-            return self._ask_oracle(texts, beam)[0].said_in(given.utterance)
-        return replace(given, pieces=tuple(self._ask_oracle(texts, beam)))
+            return alone[0].said_in(given.utterance)
+        if self.oracle is None:
+            alone = [self._cut_again(each, beam) for each in self._ask_learned(alone, beam)]
+        return replace(given, pieces=tuple(alone))
 
     def _cut_again(self, given: PartAnswer, beam: int) -> PartAnswer:
         """Return the answer with one for each command, where both parts together understand some of them and neither
@@ -355,7 +362,7 @@ class Answerer:
 
         Where all are understood, the one candidate does one after the other.
         """
-        several = tuple(map(self.judge, given.pieces))
+        several = tuple(map(self.judge, _flat(given.pieces)))
         heard = self.writer.language.anonymizer.anonymize(given.utterance)
         probabilities = [each.probability or 0.0 for each in several]
         probability, readings, about = None, [], AnsweredForm()
@@ -472,12 +479,15 @@ class Answerer:
 
     def _together(self, answer: Answer) -> dict[str, Any]:
         """Return what is said of several commands: the answer to each, and one plan of all."""
-        several = [json.loads(self.write(each)) for each in answer.given.pieces]
+        several = [json.loads(self.write(each)) for each in _flat(answer.given.pieces)]
         language = self.writer.language
         plans = [understood(each, language).task_plan for each in several]
-        joint = join(plans, language.recipes) if len(plans) <= MOST_COMMANDS else None
+        texts = [each["utterance"] for each in several]
+        joint = None
+        if len(plans) <= MOST_COMMANDS:
+            joint = join(plans, language.recipes, utterances=texts)
         questions = [each["spoken"] for each in several if each["decision"] != Decision.ACT]
-        said = next(iter(questions), spoken(joint.plan) if joint else "")
+        said = next(iter(questions), joint.spoken if joint else "")
         return {
             "several": several,
             "joint_plan": joint.as_json() if joint else None,
@@ -505,6 +515,12 @@ class Answerer:
                 return next(iter(asked), shall_i(first["english"]))
         told = [each.message for each in answer.reasons if each.code not in _OF_FIT]
         return " ".join(told) or NOT_UNDERSTOOD
+
+
+def _flat(pieces: Sequence[PartAnswer]) -> Iterator[PartAnswer]:
+    """Yield the commands, those of a sentence that holds several too."""
+    for piece in pieces:
+        yield from _flat(piece.pieces) if piece.pieces else (piece,)
 
 
 def _is_settled(answer: PartAnswer) -> bool:

@@ -73,6 +73,8 @@ def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[s
         TooManyCommands: there are more than ``MOST_COMMANDS``.
         ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
+    if not any(map(str.isalnum, utterance)):
+        return ()
     several = client().parse(world.name, utterance, beam=1, run=run)["several"]
     commands = tuple(each["utterance"] for each in several) or (utterance,)
     _require_few(commands)

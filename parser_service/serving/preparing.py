@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import islice
 from random import Random
 from typing import Self
@@ -18,7 +18,13 @@ from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
 from annotations.language.requests import NearCommands, WordUse
-from annotations.language.symbols import Symbols, Text, Wildcard
+from annotations.language.symbols import (
+    DEFAULT_CLASSES,
+    EntityClasses,
+    Symbols,
+    Text,
+    Wildcard,
+)
 from annotations.language.templates import spread_derivations
 from annotations.language.text import has_half_character, normalise
 from annotations.models import World
@@ -34,6 +40,30 @@ MOST_COMMANDS = 4_000
 REMEMBERED_WORLDS = 8
 
 
+@dataclass(frozen=True)
+class LearnedUse:
+    """What some derivations of a grammar tell, each thing found out when it is first asked for."""
+
+    derivations: tuple[tuple[Symbols, Form], ...]
+    predicates: Mapping[str, Predicate] = field(default_factory=dict)
+    classes: EntityClasses = DEFAULT_CLASSES
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """Which mention fills which slot."""
+        return Evidence(self.derivations)
+
+    @cached_property
+    def use(self) -> WordUse:
+        """Which words name which predicate, and lead to which slot."""
+        return WordUse.of(self.derivations, self.predicates, self.classes)
+
+    @cached_property
+    def near(self) -> NearCommands:
+        """Finds the commands that are near to what was said."""
+        return NearCommands(_as_command(symbols) for symbols, _ in self.derivations)
+
+
 @dataclass(frozen=True, slots=True)
 class WorldLanguage:
     """What the texts and forms of a world are read with, as it was at one moment."""
@@ -46,26 +76,34 @@ class WorldLanguage:
     action_names: Mapping[str, ActionName]
     recipes: RecipeBook = field(default_factory=default_book)
     usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
-    use: WordUse = field(default_factory=WordUse)  # which words lead where
-    near: NearCommands = field(default_factory=lambda: NearCommands(()))
+    learned: LearnedUse = field(default_factory=lambda: LearnedUse(()))
+
+    @property
+    def use(self) -> WordUse:
+        """Which words lead where."""
+        return self.learned.use
+
+    @property
+    def near(self) -> NearCommands:
+        """Finds the commands that are near to what was said."""
+        return self.learned.near
 
     @classmethod
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
-        evidence, use, near = _learned(world)
+        learned = learned_use(world)
         lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
             lookup,
-            evidence,
+            learned.evidence,
             names_of(world),
             recipe_book_of(world),
             usual_places(ontology, lookup),
-            use,
-            near,
+            learned,
         )
 
 
@@ -108,21 +146,19 @@ def require_beam(beam: object) -> int:
     return beam
 
 
-def _learned(world: World) -> tuple[Evidence, WordUse, NearCommands]:
+def learned_use(world: World) -> LearnedUse:
     """Return what the grammar of ``world`` tells about words and roles, kept until the world changes."""
     return _learn(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
 
 
 @lru_cache(maxsize=REMEMBERED_WORLDS)
-def _learn(pk: int, revision: int) -> tuple[Evidence, WordUse, NearCommands]:
+def _learn(pk: int, revision: int) -> LearnedUse:
     world = World.objects.get(pk=pk)
     try:
-        pairs = list(islice(_derivations(world), MOST_COMMANDS))
+        pairs = tuple(islice(_derivations(world), MOST_COMMANDS))
     except LanguageError:  # a grammar that cannot be read says nothing; its page says why
-        pairs = []
-    classes = ontology_of(world).classes
-    near = NearCommands(_as_command(symbols) for symbols, _ in pairs)
-    return Evidence(pairs), WordUse.of(pairs, predicates_of(world), classes), near
+        pairs = ()
+    return LearnedUse(pairs, predicates_of(world), ontology_of(world).classes)
 
 
 def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:

@@ -208,10 +208,10 @@ class Shelf:
         if run is not None:
             return self._load_run(world, wanted, run, None)
         if parser:
-            wanted = replace(wanted, run=None, order=AnsweringOrder.ORACLE)
-        elif order:
-            wanted = replace(wanted, order=order)
-        return self._load(world, wanted, None)
+            writer = self._writer(_world(world, wanted), wanted, None)
+            reader = _reader(writer, None)
+            return self._alone(Answerer(world, writer, reader, wanted=wanted))
+        return self._load(world, replace(wanted, order=order) if order else wanted, None)
 
     def _alone(self, answerer: Answerer) -> Answerer:
         """Return the oracle of a world alone. Raises NotServed where the world has no templates."""
@@ -224,8 +224,9 @@ class Shelf:
             sentence = (
                 f"{answerer.world} has no templates, so its grammar oracle understands nothing."
             )
-            raise NotServed(409, f"{sentence} Write templates first.")
-        return replace(answerer, oracle=oracle, learned=None, problem="")
+            raise NotServed(409, f"{sentence} Write templates first.", "no_templates")
+        reader = _reader(answerer.writer, oracle)
+        return replace(answerer, reader=reader, oracle=oracle, learned=None, problem="")
 
     def _run_in(self, world: str) -> int | None:
         answerer = self._answerers.get(world)

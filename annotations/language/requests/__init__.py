@@ -13,6 +13,7 @@ from annotations.language.requests.cutting import (
     Piece,
     cut,
     cut_at_joints,
+    sentences,
 )
 from annotations.language.requests.fitting import (
     Exchange,
@@ -66,6 +67,7 @@ __all__ = [
     "objections",
     "other_requests",
     "says_number",
+    "sentences",
     "stopped_by",
     "with_entities",
 ]

@@ -464,6 +464,30 @@ _OPENING = re.compile(
 _CLOSING = re.compile(rf"(?:\s++(?:{_phrases(_PARTING)}))++[\s.,;:!?]*+\Z", re.IGNORECASE)
 
 
+_END = re.compile(r"[.;!?]\s+|\n+")
+_ITEM = re.compile(r"(?<!\S)\(?([1-9])[.)]\s")  # of a list
+
+
+def sentences(utterance: str) -> tuple[Piece, ...]:
+    """Return the sentences of an utterance, or the items of a numbered list; none of signs alone."""
+    numbers = list(_ITEM.finditer(utterance))
+    is_list = [int(each[1]) for each in numbers] == list(range(1, len(numbers) + 1))
+    if numbers and is_list and not utterance[: numbers[0].start()].strip():
+        starts = [each.end() for each in numbers]
+        ends = [*(each.start() for each in numbers[1:]), len(utterance)]
+    else:
+        marks = list(_END.finditer(utterance))
+        starts = [0, *(each.end() for each in marks)]
+        ends = [*(each.start() for each in marks), len(utterance)]
+    found = []
+    for start, end in zip(starts, ends, strict=True):
+        text = utterance[start:end].strip(_AROUND)
+        if text:
+            begin = utterance.index(text, start)
+            found.append(Piece(begin, begin + len(text), text, False))
+    return tuple(found)
+
+
 def cut_at_joints(
     utterance: str, judge: Judge | None, most: int = MOST_COMMANDS
 ) -> tuple[Piece, ...]:

@@ -38,6 +38,13 @@ def trained(split, parser="knn", **asked):
     return run
 
 
+def answering(split, **asked):
+    """Train a run that is the learned part of what answers."""
+    run = trained(split, **asked)
+    promote(run, None)
+    return run
+
+
 def ask(text: str, *options: str) -> dict:
     out = StringIO()
     call_command("parse", text, "--world", "home", *options, "--json", stdout=out)
@@ -46,7 +53,7 @@ def ask(text: str, *options: str) -> dict:
 
 @pytest.mark.parametrize("sources", ["gen", "gen+para"])
 def test_every_parser_is_asked_as_people_speak_as_it_was_evaluated(split, sources):
-    run = trained(split, train_sources=sources)
+    run = answering(split, train_sources=sources)
     answer = ask("Bring me the red cup")
     assert (answer["run"], answer["parser"]) == (run.pk, "knn")
     assert answer["parsed_text"] == "Bring me the red cup"
@@ -56,14 +63,14 @@ def test_every_parser_is_asked_as_people_speak_as_it_was_evaluated(split, source
     "asked", ["bring me the red c\u00adup", "bring\u200b me the\u00a0red cup\ufeff"]
 )
 def test_what_does_not_show_changes_no_answer(split, asked):
-    trained(split, train_sources="gen")
+    answering(split, train_sources="gen")
     assert ask(asked) == ask("bring me the red cup")
     with pytest.raises(CommandError):
         ask("\u200b")
 
 
 def test_an_answer_names_the_entities_that_the_utterance_names(split):
-    trained(split, train_sources="gen")
+    answering(split, train_sources="gen")
     answer = ask("Bring me the red cup")
     first = answer["candidates"][0]
     assert (first["form"], first["grounded"]) == (FETCH, FETCH_CUP)
@@ -95,7 +102,7 @@ def test_of_two_runs_the_surer_one_is_the_best(split):
 
 def test_the_promoted_run_is_asked_where_none_is_named(split):
     promoted = trained(split, train_sources="gen")
-    trained(split, train_sources="gen+para")
+    answering(split, train_sources="gen+para")
     assert ask("find the red cup")["run"] != promoted.pk
     promote(promoted, None)
     assert ask("find the red cup")["run"] == promoted.pk
@@ -119,7 +126,7 @@ def warnings(text: str) -> list[str]:
 
 
 def test_what_the_world_does_not_know_gets_a_warning(split):
-    trained(split, train_sources="gen")
+    answering(split, train_sources="gen")
     assert warnings("bring me the red cup") == []
     assert warnings("bring me the moon") == [
         "<object> stays open: the utterance names no object of this world."
@@ -139,14 +146,14 @@ def test_what_the_world_does_not_know_gets_a_warning(split):
 
 
 def test_warnings_are_printed_for_a_person(split):
-    trained(split, train_sources="gen")
+    answering(split, train_sources="gen")
     out = StringIO()
     call_command("parse", "bring me the moon", "--world", "home", stdout=out)
     assert out.getvalue().endswith("the utterance names no object of this world.\n")
 
 
 def test_the_steps_of_the_task_plan_are_printed_for_a_person(split):
-    trained(split, train_sources="gen")
+    answering(split, train_sources="gen")
     out = StringIO()
     call_command("parse", "bring me the red cup", "--world", "home", stdout=out)
     assert "       1  find_object(the red cup)\n" in out.getvalue()
@@ -154,7 +161,7 @@ def test_the_steps_of_the_task_plan_are_printed_for_a_person(split):
 
 
 def test_an_utterance_without_an_answer_has_no_candidates(split):
-    trained(split, config={"least_overlap": 0.9})
+    answering(split, config={"least_overlap": 0.9})
     assert ask("sing a song")["candidates"] == []
 
 
@@ -178,7 +185,7 @@ def test_a_run_that_has_not_succeeded_is_not_asked(split):
 
 
 def test_a_parser_whose_folder_is_gone_says_where_it_was(split):
-    run = trained(split)
+    run = answering(split)
     remove_folder(model_folder(run.pk))
     with pytest.raises(CommandError, match=str(model_folder(run.pk))) as refused:
         ask("bring me the red cup")

@@ -95,7 +95,7 @@ def test_a_run_answers_as_it_answers_alone(world, ask):
     assert len(answers) == 42
     for number, text in ((0, "find the bowl"), (41, "bring me the red cup")):
         out = StringIO()
-        call_command("parse", text, "--world", "home", "--json", stdout=out)
+        call_command("parse", text, "--world", "home", "--run", str(run.pk), "--json", stdout=out)
         assert answers[number] == json.loads(out.getvalue())
 
 

@@ -87,7 +87,7 @@ def test_what_is_no_command_does_not_become_one(sentence):
         ("go to go to the galley", ("repeated", 0, 5, "go to", "")),
         ("bring me the papaya, no, the cocoa", ("repair", 9, 24, "the papaya, no,", "")),
         ("hey Rosie bring me the cocoa", ("courtesy", 0, 9, "hey Rosie", "")),
-        ("what's the name of the person at the piano", ("contraction", 0, 6, "what's", "what is")),
+        ("I'd like a papaya from the piano", ("contraction", 0, 3, "I'd", "I would")),
         ("bring me cocoa", ("article", 9, 9, "", "the")),
         ("goto the galley", ("split", 0, 4, "goto", "go to")),
         ("count the drinks in the gal lei", ("joined", 24, 31, "gal lei", "galley")),
@@ -169,7 +169,6 @@ def test_names_are_heard_by_their_sound_their_letters_and_household_words(uttera
         "you shouldn't go to the galley",
         "Emily goes to the galley",
         "tell me what the biggest things on the piano is",
-        "take the papaya from the fridge to Emily",
     ],
 )
 def test_another_name_and_another_request_stay_what_they_are(utterance):
