@@ -27,13 +27,16 @@ from parser_service.serving.preparing import WorldLanguage, require_utterance
 
 @dataclass(frozen=True, slots=True)
 class UnderstoodCommand:
-    """One of the commands: its form with entities, and the task plan of it alone."""
+    """One of the commands: its form with entities, the task plan of it alone, and how sure the answer is."""
 
     utterance: str
     is_unknown: bool
     grounded: str
     english: str
     task_plan: TaskPlan
+    decision: str
+    sureness: str
+    probability: float | None
 
     def as_json(self) -> dict[str, Any]:
         return {
@@ -43,6 +46,9 @@ class UnderstoodCommand:
             "english": self.english,
             "task_plan": self.task_plan.as_json(),
             "spoken": spoken(self.task_plan),
+            "decision": self.decision,
+            "sureness": self.sureness,
+            "probability": self.probability,
         }
 
 

@@ -21,14 +21,16 @@ from parser_service.serving.parser_client import ParserAway
 from parser_service.web.serving.curl_commands import curl_command
 
 MOST_TEXT = MOST_COMMANDS * MOST_CHARACTERS  # of a field, which may hold all commands
-FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
+TOGETHER = "utterance"  # the field for all of them
+FIELDS = [TOGETHER, *(f"command{number}" for number in range(1, MOST_COMMANDS + 1))]
 
 
 @world_view(Duty.VIEW)
 def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
     """Show the commands that the address names; the plan comes when the page has loaded."""
     context = {
-        "commands": [(name, _text_of(request.GET, name)) for name in FIELDS],
+        "utterance": _text_of(request.GET, TOGETHER),
+        "commands": [(name, _text_of(request.GET, name)) for name in FIELDS[1:]],
         "has_text": any(_text_of(request.GET, name) for name in FIELDS),
         "most_text": MOST_TEXT,
         **_asking(world),

@@ -94,7 +94,10 @@ def test_a_trait_a_pose_and_a_topic_are_a_row_each(club, call_as, superuser):
         ("1. Bring me the cocoa.", "bring me the cocoa"),
         ("(2) follow Otto", "follow Otto"),
         ("Ｂｒｉｎｇ ｍｅ ｔｈｅ ｃｏｃｏａ．", "bring me the cocoa"),
-        ("Go to the ｌｏｂｂｙ，ﬁnd Otto and follow him", "go to the lobby, find Otto and follow him"),
+        (
+            "Go to the ｌｏｂｂｙ，ﬁnd Otto and follow him",
+            "go to the lobby, find Otto and follow him",
+        ),
     ],
 )
 def test_commas_pronouns_numbers_of_lists_and_other_letters_are_heard(club, said, as_written):

@@ -78,7 +78,10 @@ def test_a_plan_is_one_sentence(form, sentence):
 @pytest.mark.parametrize(
     ("forms", "sentence"),
     [
-        ((f"(take {TEA})", f"(take {TEA})"), "find a tea, take it, find another tea, take it, and come back to you."),
+        (
+            (f"(take {TEA})", f"(take {TEA})"),
+            "find a tea, take it, find another tea, take it, and come back to you.",
+        ),
         (  # what the robot tells could be "it" too
             ('(say (count (λ$1:e (is_a $1 "cookies") (at $1 "attic"))))', f"(bring {TEA})"),
             "tell you the number of the cookies, and give the tea to you.",
