@@ -24,6 +24,7 @@ class ParserServiceConfig(AppConfig):
         register_verb(JobKind.PROPOSE, "parser_service.labelling.parser_proposals.propose")
         register_verb(JobKind.ANALYSE, "parser_service.analyses.analysis_job.analyse")
         register_verb(JobKind.ANSWER, "parser_service.analyses.tryout_answers.answer")
+        register_verb(JobKind.MEASURE, "parser_service.results.measuring_job.measure")
         register_verb(JobKind.PARSE, "parser_service.serving.batch_job.parse_batch")
         register_verb(
             JobKind.PARAPHRASE, "parser_service.paraphrasing.model_contributor.paraphrase_of"

@@ -59,6 +59,7 @@ of_world = [
     path("runs/<int:pk>/candidates/", prediction_rest.Candidates.as_view(), name="candidates"),
     path(f"{ANSWER}/review/", review_rest.ReviewOfAnswer.as_view(), name="answer-review"),
     path(f"{ANSWER}/doubt/", review_rest.DoubtLabel.as_view(), name="answer-doubt"),
+    path("results/measure/", result_rest.Measurement.as_view(), name="results-measure"),
     path("results/", result_rest.Results.as_view(), name="results"),
     path("answerer/", OneAnswerer.as_view(), name="answerer"),
     path("plan/", robot_rest.PlanRoute.as_view(), name="plan"),

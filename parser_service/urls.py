@@ -104,6 +104,7 @@ urlpatterns = [
         name="error_category_delete",
     ),
     path("results/", result_pages.results, name="results"),
+    path("results/measure/", result_pages.results_measure, name="results_measure"),
     path("results/table/", result_pages.results_table, name="results_table"),
     path("compare/", compare_pages.compare, name="compare"),
     path("slices/", slice_pages.slices, name="slices"),

@@ -156,6 +156,7 @@ class JobKind(models.TextChoices):
     AUDIT = "audit", "Label audit"
     ANALYSE = "analyse", "Error analysis of a run"
     ANSWER = "answer", "Answers of runs to a text"
+    MEASURE = "measure", "Measurement of what a robot gets"
     PARSE = "parse", "Parse of a batch"
     IMPORT_RESULTS = "import_results", "Import of crowd results"
     PARAPHRASE = "paraphrase", "Paraphrases by a language model"
@@ -168,6 +169,7 @@ DUTIES = {
     JobKind.PROPOSE: Duty.ANNOTATE,
     JobKind.AUDIT: Duty.REVIEW,
     JobKind.ANALYSE: Duty.REVIEW,
+    JobKind.MEASURE: Duty.REVIEW,
     JobKind.ANSWER: Duty.VIEW,
     JobKind.PARSE: Duty.VIEW,
 }

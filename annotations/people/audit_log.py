@@ -131,6 +131,7 @@ WHAT = {
     "label_send": "send an utterance to be labelled",
     "label_take_back": "take a label back",
     "audit_start": "start a label audit",
+    **dict.fromkeys(("results_measure", "results-measure"), "measure what a robot gets"),
     "audit_decide": "decide about a label",
     "audit_take_back": "take a decision back",
     "queue_settings": "set shares",

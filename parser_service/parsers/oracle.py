@@ -79,7 +79,7 @@ class GrammarOracle(Parser):
         self._categories = tuple(self.knowledge.grammar or ())
         self._chart = TemplateChart(self._categories)
         ontology = self.knowledge.ontology or Ontology(())
-        self._reader = HearingReader(ontology, self._chart.vocabulary)
+        self.reader = HearingReader(ontology, self._chart.vocabulary)
 
     def fit(
         self,
@@ -109,7 +109,7 @@ class GrammarOracle(Parser):
         return answers
 
     def _candidates(self, utterance: str) -> list[Candidate]:
-        for heard in self._reader.lattices(utterance):
+        for heard in self.reader.lattices(utterance):
             found: dict[tuple[str, tuple[str | None, ...]], Candidate] = {}
             for each in self._parse(heard):
                 values = heard.values(each.arcs)
@@ -133,7 +133,7 @@ class GrammarOracle(Parser):
 
         A few are none: see ``TemplateChart.spans``.
         """
-        for heard in self._reader.lattices(utterance):
+        for heard in self.reader.lattices(utterance):
             if heard.tokens:
                 spans = self._chart.spans(heard.lattice, Budget(CHECK_STEPS))
                 yield Islands(

@@ -56,8 +56,11 @@ class Answerer(Protocol):
     """Whoever answers in a world. ``run`` is that of the learned parser, None where none is asked; ``order`` is an
     ``AnsweringOrder``."""
 
-    run: TrainingRun | None
-    order: str
+    @property
+    def run(self) -> TrainingRun | None: ...
+
+    @property
+    def order(self) -> str: ...
 
     def answer(self, utterances: Sequence[str]) -> Sequence[AnsweredForm]:
         """Return the answer to each utterance."""

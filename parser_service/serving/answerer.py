@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from http import HTTPStatus
 from math import log, prod
 from typing import TYPE_CHECKING, Any, cast
@@ -18,8 +18,19 @@ from typing import TYPE_CHECKING, Any, cast
 from annotations.language.dialogue import shall_i
 from annotations.language.errors import Refusal
 from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
-from annotations.language.grounding import Anonymized
+from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader
 from annotations.language.recipes import MOST_COMMANDS, join, spoken
+from annotations.language.requests import (
+    Fit,
+    Objection,
+    best_alternative,
+    best_fitting,
+    exchange,
+    fit,
+    objections,
+    stopped_by,
+    with_entities,
+)
 from parser_service.analysis.sureness import (
     AnsweredForm,
     AnsweringPart,
@@ -49,6 +60,7 @@ if TYPE_CHECKING:
 USUAL_BEAM = 5
 LINES_TOGETHER = 32  # of a request of many lines
 NOT_UNDERSTOOD = "I did not understand that."
+_NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
 _CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
 
@@ -96,6 +108,7 @@ class PartAnswer:
     candidates: Sequence[Candidate] = ()
     agrees: bool | None = None
     pieces: tuple[PartAnswer, ...] = ()
+    changes: tuple[HeardChange, ...] = ()
 
     def said_in(self, utterance: str) -> PartAnswer:
         """Return the same as the answer to an utterance that has this one inside."""
@@ -116,10 +129,18 @@ class Answer:
     about: AnsweredForm
     probability: float | None
     decision: Decision
+    reasons: tuple[Objection, ...]
 
     @property
     def is_unknown(self) -> bool:
-        return self.about.evidence is None
+        """Whether there is nothing to act on: no form, or one that somebody did not ask for."""
+        return self.about.evidence is None or self.about.objections
+
+    @property
+    def changes(self) -> tuple[HeardChange, ...]:
+        """What was heard otherwise than it was said."""
+        best = next(iter(self.readings), None)
+        return (*self.given.changes, *(best.candidate.heard if best else ()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +153,7 @@ class Answerer:
 
     world: str
     writer: AnswerWriter
+    reader: HearingReader
     oracle: LoadedParser | None = None
     learned: LoadedParser | None = None
     calibrated: Calibrated = field(default_factory=Calibrated)
@@ -166,7 +188,29 @@ class Answerer:
         """Return what the parts answer to each utterance. Raises NotServed where one asks a server that does not
         answer in time."""
         answers = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
-        return self._ask_learned(answers, beam)
+        answers = self._ask_learned(answers, beam)
+        return [self._cut_again(each, beam) for each in answers]
+
+    def ask_best(self, alternatives: Sequence[tuple[str, float]], beam: int) -> PartAnswer:
+        """Return the answer to the best of a recogniser's alternatives that is understood, or to the first; each has a
+        text and a score. Raises as ``ask``."""
+        texts = [text for text, _ in alternatives]
+        answers = dict(zip(texts, self.ask(texts, beam), strict=True))
+        best = (
+            0
+            if len(texts) == 1
+            else best_alternative(alternatives, lambda text: self._rate(answers[text]))
+        )
+        return answers[texts[best or 0]]
+
+    def _rate(self, given: PartAnswer) -> float | None:
+        """Return how well an utterance was understood, higher is better; None where it was not."""
+        answer = self.judge(given)
+        if answer.is_unknown or answer.probability is None:
+            return None
+        return log(answer.probability) - sum(
+            -each.score for each in given.candidates[:1] if given.part is self.oracle
+        )
 
     def _ask_oracle(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
         if self.oracle is None:
@@ -182,25 +226,50 @@ class Answerer:
         unsure = [at for at, each in enumerate(answers) if not _is_settled(each)]
         if self.learned is None or not unsure:
             return answers
-        texts = [answers[at].text for at in unsure]
-        found = dict(zip(unsure, self.learned.ask(texts, beam), strict=True))
+        # A learned parser is given the text without its noise.
+        cleaned = {at: self.reader.clean(answers[at].text) for at in unsure}
+        found = dict(
+            zip(
+                unsure,
+                self.learned.ask([each.text for each in cleaned.values()], beam),
+                strict=True,
+            )
+        )
         return [
-            self._join(each, found[at]) if at in found else each for at, each in enumerate(answers)
+            self._join(each, found[at], cleaned[at]) if at in found else each
+            for at, each in enumerate(answers)
         ]
 
     def _cut(self, given: PartAnswer, beam: int) -> PartAnswer:
-        """Return the answer with one for each command, where the oracle is silent and the utterance holds several."""
-        if given.candidates or not given.utterance.strip():
+        """Return the answer with one for each command, where the oracle understands each and not all together."""
+        if given.candidates or self.oracle is None or not given.utterance.strip():
             return given
-        oracle = self.oracle.parser if self.oracle else None
-        judge = self._judge if self.learned else None
-        pieces = pieces_of(given.utterance, cast("GrammarOracle | None", oracle), judge)
+        pieces = pieces_of(given.utterance, self._grammar)
+        if not all(each.is_understood for each in pieces):
+            return given
         texts = [each.text for each in pieces]
-        if len(texts) < 2:
-            text = texts[0] if texts else given.text
-            return self._ask_oracle([text], beam)[0].said_in(given.utterance)
-        alone = self._ask_learned(self._ask_oracle(texts, beam), beam)
-        return replace(given, pieces=tuple(alone))
+        if len(texts) == 1:  # an announcement was taken off
+            return self._ask_oracle(texts, beam)[0].said_in(given.utterance)
+        return replace(given, pieces=tuple(self._ask_oracle(texts, beam)))
+
+    def _cut_again(self, given: PartAnswer, beam: int) -> PartAnswer:
+        """Return the answer with one for each command, where both parts together understand some of them and neither
+        understands all together, or the learned part leaves something out."""
+        if given.pieces or self.learned is None or given.part is not self.learned:
+            return given
+        evidence = self.judge(given).about.evidence
+        if evidence is not None and not evidence.left_out:
+            return given
+        pieces = pieces_of(given.utterance, self._grammar, self._judge)
+        is_better = all if evidence else any
+        if len(pieces) < 2 or not is_better(each.is_understood for each in pieces):
+            return given
+        alone = self._ask_oracle([each.text for each in pieces], beam)
+        return replace(given, pieces=tuple(self._ask_learned(alone, beam)))
+
+    @property
+    def _grammar(self) -> GrammarOracle | None:
+        return cast("GrammarOracle | None", self.oracle.parser if self.oracle else None)
 
     def _judge(self, texts: Sequence[str]) -> list[float | None]:
         """Return how well the learned part understands each text as one command; None for one that it does not."""
@@ -226,12 +295,58 @@ class Answerer:
         heard = self.writer.language.anonymizer.anonymize(given.text)
         score_kind = given.part.score_kind if given.part else ""
         readings = self.writer.readings(heard, given.candidates, score_kind)
-        about = self._about(given, readings)
+        # What is no form is not shown.
+        readings = [each for each in readings if each.slots is not None]
+        fits, reasons = Fit(), ()
+        if given.part is self.learned:
+            reasons = objections(heard)
+            readings, fits = self._fit(readings, heard)
+        about = replace(self._about(given, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
             probability = self.calibrated.calibration.probability(about.evidence)
         decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
-        return Answer(given, (), heard, readings, about, probability, decision)
+        if about.evidence is None:
+            reasons = (*reasons, *self._stopped_by(heard))
+        reasons = (*reasons, *_misfits(fits))
+        return Answer(given, (), heard, readings, about, probability, decision, reasons)
+
+    def _fit(
+        self, readings: Sequence[Reading[str]], heard: Anonymized
+    ) -> tuple[list[Reading[str]], Fit]:
+        """Return the readings of a learned parser in the order of how well they fit what was said, and the fit of the
+        first.
+
+        Where the words between say two slots the other way round and no reading has them so, the first is exchanged.
+        """
+        if not readings or readings[0].candidate.form == UNKNOWN:
+            return list(readings), Fit()
+        known = [each for each in readings if each.candidate.form != UNKNOWN]
+        others = [each for each in readings if each.candidate.form == UNKNOWN]
+        fits = [self._fit_of(each, heard) for each in known]
+        scores = [_log_probability(each.candidate.score, self.learned) for each in known]
+        scored = [(0.0 if of is None else of, fit) for of, fit in zip(scores, fits, strict=True)]
+        order = best_fitting(scored) if None not in scores else list(range(len(known)))
+        ordered, best = [known[at] for at in order] + others, fits[order[0]]
+        pair = next((each for each in best.exchanged if len(each.slots) == 2), None)
+        if pair is not None:
+            first = ordered[0]
+            form, values = exchange(_form(first), first.slots or (), pair)
+            turned = replace(first.candidate, form=canonical_text(form), values=values)
+            [reading] = self.writer.readings(heard, [turned], None)
+            fit = self._fit_of(reading, heard)
+            if not fit.exchanged:
+                return [reading, *ordered], replace(fit, exchanged=(pair,))
+        return ordered, best
+
+    def _fit_of(self, reading: Reading[str], heard: Anonymized) -> Fit:
+        language = self.writer.language
+        slots = reading.slots or ()
+        return fit(_form(reading), slots, heard, language.use, language.ontology)
+
+    def _stopped_by(self, heard: Anonymized) -> tuple[Objection, ...]:
+        language = self.writer.language
+        return stopped_by(heard, language.ontology, language.use.vocabulary)
 
     def _judge_several(self, given: PartAnswer) -> Answer:
         """Return the answer to several commands: as sure as all of them together, and as the least sure one decides.
@@ -257,7 +372,7 @@ class Answerer:
         decision = next(each for each in _CAREFUL if each in decisions)
         if decision is Decision.REFUSE:
             decision = Decision.ASK  # the others can be done
-        return Answer(given, several, heard, readings, about, probability, decision)
+        return Answer(given, several, heard, readings, about, probability, decision, ())
 
     def write(self, given: PartAnswer) -> str:
         """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
@@ -279,13 +394,13 @@ class Answerer:
             **parse.as_json(),
             "is_unknown": answer.is_unknown,
             "agrees": given.agrees,
-            "heard": [],
+            "heard": [asdict(each) for each in answer.changes],
             "probability": answer.probability and round(answer.probability, 4),
             "decision": answer.decision,
             "sureness": in_words(answer.decision, answer.probability),
             "spoken": said_by,
-            "reasons": [],
-            "nearest": [],
+            "reasons": [{"code": each.code, "message": each.message} for each in answer.reasons],
+            "nearest": self._nearest(answer),
             "several": [],
             "joint_plan": None,
         }
@@ -298,11 +413,19 @@ class Answerer:
             written[0] = as_json(first | {"spoken": said_by})
         return f'{as_json(head)[:-1]}, "candidates": [{", ".join(written)}]}}'
 
-    def _join(self, by_oracle: PartAnswer, learned: Sequence[Candidate]) -> PartAnswer:
+    def _join(
+        self, by_oracle: PartAnswer, learned: Sequence[Candidate], cleaned: HeardText
+    ) -> PartAnswer:
         """Return what both parts say together: the oracle's readings where it has some, the likeliest of equally good
         ones first, else the learned answers."""
         if not by_oracle.candidates:
-            return replace(by_oracle, part=self.learned, candidates=learned)
+            return replace(
+                by_oracle,
+                text=cleaned.text,
+                part=self.learned,
+                candidates=learned,
+                changes=cleaned.changes,
+            )
         best = [each for each in learned[:1] if each.form != UNKNOWN]
         if not best:
             return by_oracle
@@ -312,7 +435,9 @@ class Answerer:
         chosen = same + [each for each in by_oracle.candidates if each not in same]
         return replace(by_oracle, candidates=chosen, agrees=bool(same))
 
-    def _about(self, given: PartAnswer, readings: Sequence[Reading[str]]) -> AnsweredForm:
+    def _about(
+        self, given: PartAnswer, readings: Sequence[Reading[str]], fits: Fit
+    ) -> AnsweredForm:
         """Return what is known of the first reading, for the calibration and the decision."""
         if not readings or readings[0].slots is None or readings[0].candidate.form == UNKNOWN:
             return AnsweredForm()
@@ -328,10 +453,20 @@ class Answerer:
             learned_log_probability=None if is_oracle else scores[0],
             margin=margin,
             agrees=given.agrees,
+            not_said=len(fits.not_said),
+            left_out=len(fits.left_out),
+            exchanged=bool(fits.exchanged),
             executable=best.executable_plans > 0,
         )
         is_open = any(slot.value is None for slot in best.slots or ())
-        return AnsweredForm(best.candidate.form, evidence, open_slots=is_open)
+        # Two names are equally near: "Hailey or Haley?"
+        rivals = {
+            each.candidate.values
+            for each in readings
+            if is_oracle and each.candidate.score == best.candidate.score and each.candidate.heard
+        }
+        is_ambiguous = len(rivals) > 1 and not given.agrees
+        return AnsweredForm(best.candidate.form, evidence, is_open, ambiguous=is_ambiguous)
 
     def _together(self, answer: Answer) -> dict[str, Any]:
         """Return what is said of several commands: the answer to each, and one plan of all."""
@@ -347,6 +482,14 @@ class Answerer:
             "spoken": said,
         }
 
+    def _nearest(self, answer: Answer) -> list[str]:
+        """Return commands that are near an utterance that was not understood, with entities of the world."""
+        if not answer.is_unknown or answer.several or answer.given.part is None:
+            return []
+        language = self.writer.language
+        near = language.near.nearest(answer.heard)
+        return [with_entities(each, answer.heard, language.ontology) for each in near]
+
     def _spoken(self, answer: Answer, first: dict[str, Any]) -> str:
         """Return what the robot says by the decision. ``first`` is the JSON of the best candidate."""
         match answer.decision:
@@ -358,7 +501,8 @@ class Answerer:
                 asked = [slot["question"] for slot in first["open_slots"]]
                 asked += [each["message"] for each in first["plan"]["problems"]]
                 return next(iter(asked), shall_i(first["english"]))
-        return NOT_UNDERSTOOD
+        told = [each.message for each in answer.reasons if each.code not in _OF_FIT]
+        return " ".join(told) or NOT_UNDERSTOOD
 
 
 def _is_settled(answer: PartAnswer) -> bool:
@@ -369,13 +513,31 @@ def _is_settled(answer: PartAnswer) -> bool:
     return bool(scores) and scores[0] == 0 and scores.count(0) == 1
 
 
+def _misfits(fits: Fit) -> Iterator[Objection]:
+    """Yield what of a form does not fit what was said."""
+    for slot in fits.not_said:
+        noun = slot.entity_class
+        yield Objection(_NOT_SAID, f"You did not say which {noun}.", 0, 0)
+    for each in fits.left_out:
+        message = f"“{each.text}” is left out." if each.text else "The number is left out."
+        yield Objection(_LEFT_OUT, message, each.start, each.end)
+    for pair in fits.exchanged:
+        said = " and ".join(f"“{slot.filler}”" for slot in pair.slots)
+        yield Objection(_ROLES, f"It is not certain which is which: {said}.", 0, 0)
+
+
+def _form(reading: Reading[str]) -> Form:
+    form = form_of(reading.candidate.form)
+    assert form is not None
+    return form
+
+
 def _sequence(readings: Sequence[Reading[str]]) -> Candidate:
     """Return the candidate that does what several say, one after the other."""
     steps: list[Form] = []
     values: list[str | None] = []
     for reading in readings:
-        form = form_of(reading.candidate.form)
-        assert form is not None
+        form = _form(reading)
         is_sequence = isinstance(form, Application) and form.predicate == SEQUENCE
         steps += form.arguments if is_sequence else (form,)
         values += [slot.filler for slot in reading.slots or () if slot.entity_class]

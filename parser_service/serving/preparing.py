@@ -11,13 +11,14 @@ from typing import Self
 
 from annotations.language.errors import LanguageError, Refusal
 from annotations.language.forms import Form
+from annotations.language.grammar import anonymized
 from annotations.language.grounding import Anonymizer, Evidence
 from annotations.language.ontology import Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate
 from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
-from annotations.language.requests import WordUse
-from annotations.language.symbols import Symbols
+from annotations.language.requests import NearCommands, WordUse
+from annotations.language.symbols import Symbols, Text, Wildcard
 from annotations.language.templates import spread_derivations
 from annotations.language.text import has_half_character, normalise
 from annotations.models import World
@@ -46,22 +47,25 @@ class WorldLanguage:
     recipes: RecipeBook = field(default_factory=default_book)
     usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
     use: WordUse = field(default_factory=WordUse)  # which words lead where
+    near: NearCommands = field(default_factory=lambda: NearCommands(()))
 
     @classmethod
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
+        evidence, use, near = _learned(world)
         lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
             lookup,
-            evidence_of(world),
+            evidence,
             names_of(world),
             recipe_book_of(world),
             usual_places(ontology, lookup),
-            word_use_of(world),
+            use,
+            near,
         )
 
 
@@ -104,29 +108,21 @@ def require_beam(beam: object) -> int:
     return beam
 
 
-def evidence_of(world: World) -> Evidence:
-    """Return the evidence of the grammar of ``world``, kept until the grammar changes."""
-    return _learned(world)[0]
-
-
-def word_use_of(world: World) -> WordUse:
+def _learned(world: World) -> tuple[Evidence, WordUse, NearCommands]:
     """Return what the grammar of ``world`` tells about words and roles, kept until the world changes."""
-    return _learned(world)[1]
-
-
-def _learned(world: World) -> tuple[Evidence, WordUse]:
     return _learn(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
 
 
 @lru_cache(maxsize=REMEMBERED_WORLDS)
-def _learn(pk: int, revision: int) -> tuple[Evidence, WordUse]:
+def _learn(pk: int, revision: int) -> tuple[Evidence, WordUse, NearCommands]:
     world = World.objects.get(pk=pk)
     try:
         pairs = list(islice(_derivations(world), MOST_COMMANDS))
     except LanguageError:  # a grammar that cannot be read says nothing; its page says why
         pairs = []
     classes = ontology_of(world).classes
-    return Evidence(pairs), WordUse.of(pairs, predicates_of(world), classes)
+    near = NearCommands(_as_command(symbols) for symbols, _ in pairs)
+    return Evidence(pairs), WordUse.of(pairs, predicates_of(world), classes), near
 
 
 def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
@@ -134,3 +130,8 @@ def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
     for category in task_categories(world):
         drawn = spread_derivations(category, MOST_OF_A_TEMPLATE, Random(0))
         yield from ((each.symbols, each.form) for each in drawn)
+
+
+def _as_command(symbols: Symbols) -> str:
+    leaves = (each for each in symbols if isinstance(each, Text | Wildcard))
+    return " ".join(word for leaf in leaves for word in anonymized(leaf))

@@ -13,6 +13,7 @@ from typing import Any
 from django.db.models import Count, Max, Sum
 
 from annotations.language.errors import LanguageError, Refusal
+from annotations.language.grounding import HearingReader
 from annotations.models import (
     Editable,
     Entity,
@@ -33,6 +34,7 @@ from parser_service.models import (
 )
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser
+from parser_service.parsers.oracle import GrammarOracle
 from parser_service.parsers.registry import ORACLE, untrained
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.answerer import (
@@ -359,7 +361,8 @@ class Shelf:
             raise Refusal(_nobody_answers(name, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
         run = learned.run if learned else None
         sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong)
-        return Answerer(name, writer, oracle, learned, sureness, wanted=wanted)
+        reader = _reader(writer, oracle)
+        return Answerer(name, writer, reader, oracle, learned, sureness, wanted=wanted)
 
     def _load_run(
         self, name: str, wanted: WantedAnswerer, run: int, held: Answerer | None
@@ -369,7 +372,8 @@ class Shelf:
         world = _world(name, wanted)
         writer = self._writer(world, wanted, held)
         sureness = calibrated(world, run, AnsweringOrder.LEARNED, wanted.allowed_wrong)
-        return Answerer(name, writer, None, learned, sureness, wanted=wanted)
+        reader = _reader(writer, None)
+        return Answerer(name, writer, reader, None, learned, sureness, wanted=wanted)
 
     def _writer(self, world: World, wanted: WantedAnswerer, held: Answerer | None) -> AnswerWriter:
         if held is not None and _words(held.wanted) == _words(wanted):
@@ -427,6 +431,13 @@ class Shelf:
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
             parser=parser,
         )
+
+
+def _reader(writer: AnswerWriter, oracle: LoadedParser | None) -> HearingReader:
+    """Return what hears utterances without their noise, by the words of the oracle where there is one."""
+    if oracle is not None and isinstance(oracle.parser, GrammarOracle):
+        return oracle.parser.reader
+    return HearingReader(writer.language.ontology, writer.language.use.vocabulary)
 
 
 def _world(name: str, wanted: WantedAnswerer) -> World:

@@ -36,6 +36,7 @@ from annotations.language.requests.stopping import (
     UNKNOWN_WORD,
     NearCommands,
     stopped_by,
+    with_entities,
 )
 from annotations.language.requests.word_use import WordUse
 
@@ -66,4 +67,5 @@ __all__ = [
     "other_requests",
     "says_number",
     "stopped_by",
+    "with_entities",
 ]

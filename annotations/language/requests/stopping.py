@@ -23,6 +23,7 @@ MOST_ALIKE = 0.6  # share of the words that two of the commands that are offered
 MOST_COMPARED = 50
 _SPELT_ALIKE = 0.75
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)*")
+_TOKEN = re.compile(r"<\w+>")
 _ENDINGS = re.compile(r"(?:'s|ies|es|s|ing|ed|d|er|ly|n't)$")
 _FEWEST_LETTERS = 3  # that are left of a word without its ending
 
@@ -86,6 +87,21 @@ def _words_of_entities(ontology: Ontology) -> Iterator[str]:
     for entity in ontology.entities:
         for text in (entity.text, *entity.aliases):
             yield from _WORD.findall(text.casefold())
+
+
+def with_entities(command: str, heard: Anonymized, ontology: Ontology) -> str:
+    """Return a command with an entity for each class token: what the utterance names of its class, else the first of
+    the world."""
+    named: defaultdict[str, list[str]] = defaultdict(list)
+    for span in heard.spans:
+        named[span.entity_class].append(span.value)
+
+    def fill(match: re.Match[str]) -> str:
+        entity_class = match[0].strip("<>").rstrip("0123456789")
+        values = named[entity_class] or [each.text for each in ontology.of_class(entity_class)[:1]]
+        return (values.pop(0) if len(values) > 1 else values[0]) if values else match[0]
+
+    return _TOKEN.sub(fill, command).replace(" ,", ",")
 
 
 class NearCommands:

@@ -34,6 +34,7 @@ TEMPLATES = {
     JobKind.AUDIT: "annotations/background/_audit_result.html",
     JobKind.ANALYSE: "annotations/background/_analysis_result.html",
     JobKind.ANSWER: "annotations/background/_answers_result.html",
+    JobKind.MEASURE: "annotations/background/_measuring_result.html",
     JobKind.PARAPHRASE: "annotations/background/_paraphrase_result.html",
     JobKind.PARSE: "annotations/background/_parse_result.html",
     JobKind.DELETE_WORLD: "annotations/background/_deletion_result.html",

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from django.conf import settings
 from django.core.management.base import CommandParser
 
 from annotations.language.errors import Refusal
 from annotations.management.base import ReportingCommand, find_split, find_world
-from annotations.models import Split, World
-from parser_service.analysis.sureness import AnsweredForm
-from parser_service.models import AnswererEvaluation, AnsweringOrder, TrainingRun
+from parser_service.models import AnswererEvaluation, AnsweringOrder
 from parser_service.models.answering import answering_of
 from parser_service.results.answerer_figures import evaluate_answerer
 from parser_service.results.answerer_rows import as_row, bins_of, reliability_of
-from parser_service.serving.answerer import Answerer
-from parser_service.serving.default_runs import standings
-from parser_service.serving.metrics import Metrics
-from parser_service.serving.shelf import Shelf
+from parser_service.results.measuring_job import answerer_of, usual_split
 
+_BEAM = 5
 _COLUMNS = ("correct", "same_plan", "acted", "wrong_acts", "confirmed", "asked", "refused")
 
 
@@ -68,17 +61,13 @@ class Command(ReportingCommand):
                 "option_out_of_range",
             )
         home = find_world(world)
-        chosen = find_split(home, split) if split else _usual_split(home)
+        chosen = find_split(home, split) if split else usual_split(home)
         orders = order or [answering_of(home).order]
-        shelf = Shelf(settings.PARSER_MEMORY_MB * 1_000_000, Metrics(), patience=math.inf)
         rows = [
             row
             for each in orders
             for row in evaluate_answerer(
-                home,
-                chosen,
-                Measured(shelf.load(home.name, order=each), each),
-                allowed_wrong=allowed_wrong,
+                home, chosen, answerer_of(home, each), allowed_wrong=allowed_wrong
             )
         ]
         return {"world": world, "split": chosen.name, "rows": [_describe(row) for row in rows]}
@@ -87,22 +76,11 @@ class Command(ReportingCommand):
         return "\n".join(_lines(report))
 
 
-def _usual_split(world: World) -> Split:
-    """Return the split that pages open on, else the newest. Raises Refusal where there is none."""
-    if standing := next(standings(world), None):
-        return standing.split
-    split = world.splits.order_by("-pk").first()
-    if split is None:
-        raise Refusal(f"“{world}” has no split. Freeze one, then measure.", "no_split")
-    return split
-
-
 def _describe(row: AnswererEvaluation) -> dict[str, Any]:
     measured = reliability_of([row])
-    about = {"error": None, "bins": []}
-    if measured:
-        about = {"error": measured.error, "bins": list(bins_of(measured))}
-    return {**as_row(row), "reliability": about}
+    error = measured.error if measured else None
+    bins = list(bins_of(measured)) if measured else []
+    return {**as_row(row), "reliability": {"error": error, "bins": bins}}
 
 
 def _lines(report: Mapping[str, Any]) -> Iterator[str]:
@@ -134,19 +112,3 @@ def _share(share: float | None, interval: Sequence[float] | None) -> str:
 
 def _number(value: float | None) -> str:
     return "–" if value is None else f"{value:.3f}"
-
-
-@dataclass(frozen=True)
-class Measured:
-    """What answers in a world in some order, as it is measured."""
-
-    answerer: Answerer
-    order: str
-
-    @property
-    def run(self) -> TrainingRun | None:
-        key = self.answerer.run
-        return None if key is None else TrainingRun.objects.get(pk=key)
-
-    def answer(self, utterances: Sequence[str]) -> list[AnsweredForm]:
-        return self.answerer.measure(utterances)

@@ -5,16 +5,19 @@ from __future__ import annotations
 import csv
 from typing import Any
 
+from django.contrib import messages
 from django.http import HttpResponse, JsonResponse
-from django.shortcuts import render
+from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
 from annotations.exporting.split_export import formula_safe
+from annotations.language.errors import Refusal
 from annotations.models import Duty, World
-from annotations.people.access import WorldRequest, world_view
+from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.results.answerer_rows import answerer_tables
 from parser_service.results.export import HEADER, as_json, rows_of
 from parser_service.results.latex import as_latex
+from parser_service.results.measuring_job import request_measurement
 from parser_service.results.result_choices import read_choices, scored_splits
 
 
@@ -31,6 +34,19 @@ def results(request: WorldRequest, world: World) -> HttpResponse:
 def results_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the tables alone; the page refreshes itself with them."""
     return render(request, "parser_service/results/_results_table.html", results_of(request, world))
+
+
+@world_view(Duty.REVIEW, WRITE)
+def results_measure(request: WorldRequest, world: World) -> HttpResponse:
+    """Start to measure what a robot gets, or show the measurement that waits or runs."""
+    key = request.POST.get("split", "")
+    split = get_object_or_404(world.splits, pk=key) if key.isdecimal() else None
+    try:
+        job = request_measurement(world, request.user, split)
+    except Refusal as refusal:
+        messages.error(request, refusal.message)
+        return redirect("results", world=world.name)
+    return redirect("job", pk=job.pk)
 
 
 @world_view(Duty.VIEW)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from http import HTTPStatus
 from typing import Any
 
 import django_filters
 from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
+from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
@@ -13,12 +15,16 @@ from rest_framework.response import Response
 
 from annotations.language.corpus import KNOWN, harmonic_mean
 from annotations.lists.filtering import Key
-from annotations.models import Split
+from annotations.models import Duty, Split
+from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.web.rest.fields import Fields
+from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.measures import Measure, interval_of, is_known
+from parser_service.results.measuring_job import request_measurement
 from parser_service.results.result_choices import read_choices, scored_splits
 
 IntervalField = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2)
@@ -87,6 +93,29 @@ class EvaluationViewSet(RowsViewSet):
         return Evaluation.objects.filter(run__world=self.world).annotate(
             accuracy_known=Case(beside_known, default=None)
         )
+
+
+class NewMeasurement(Fields):
+    """The split to measure on; by default the one that says most about the parsers of the world."""
+
+    split = serializers.IntegerField(required=False, min_value=1, max_value=2**31)
+
+
+class Measurement(WorldRoute):
+    """Starts to measure what a robot gets from the answerer of the world; what comes of it is in ``results/``."""
+
+    model = Split
+    filter_backends = []
+    duties = {"POST": Duty.REVIEW}
+
+    @extend_schema(request=NewMeasurement, responses={202: JobSerializer})
+    @once
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        key = self.read(NewMeasurement).get("split")
+        split = get_object_or_404(self.world.splits, pk=key) if key else None
+        job = request_measurement(self.world, request.user, split)
+        location = {"Location": address_of_job(request, job)}
+        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
 
 
 class Results(WorldRoute):

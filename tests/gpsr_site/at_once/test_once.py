@@ -41,6 +41,7 @@ from parser_service.dialogues.entity_offers import offer
 from parser_service.label_audit.audit_job import request_audit
 from parser_service.models import Promotion, PromotionState, TrainingRun
 from parser_service.promotions.promotion_rule import consider
+from parser_service.results.measuring_job import request_measurement
 from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.requests import run_requests
 from parser_service.serving.batch_requests import MOST_AT_ONCE, request_batch
@@ -252,8 +253,9 @@ def test_an_offer_makes_one_entity(sample, superuser, key):
         lambda sample, by: request_audit(sample.world, by, {"parser": "", "folds": 2}),
         lambda sample, by: request_analysis(sample.run, by),
         lambda sample, by: request_proposals(sample.world, by),
+        lambda sample, by: request_measurement(sample.world, by),
     ],
-    ids=["audit", "analysis", "proposals"],
+    ids=["audit", "analysis", "proposals", "measurement"],
 )
 def test_one_job_is_asked_for(ask, sample, superuser):
     Utterance.objects.create(world=sample.world, text="go", anonymized_text="go")

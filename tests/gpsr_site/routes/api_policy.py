@@ -255,7 +255,7 @@ API_POLICY = [
     Rule("api:audit-decision-take-back", *members(CLASH), method="post"),
     *(
         Rule(f"api:{name}", *reviewers(NO_JSON), method="post")
-        for name in ("audit", "work-item-list", "example-send")
+        for name in ("audit", "results-measure", "work-item-list", "example-send")
     ),
     # Admins say who does what
     Rule("api:recipe-book", *annotators(NO_VERSION), method="patch"),

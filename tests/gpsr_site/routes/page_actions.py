@@ -126,6 +126,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "paraphrase_label": "patch paraphrase-detail",
     "paraphrase_check": "post check-form",
     "audit_start": "post audit",
+    "results_measure": "post results-measure",
     "audit_decide": "post audit-finding-decide",
     "audit_take_back": "post audit-decision-take-back",
     "audit_check": "post check-form",

@@ -269,6 +269,7 @@ POLICY = [
     Rule("audit_check", *MEMBERS, method="post"),
     Rule("audit_decide", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("audit_take_back", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
+    Rule("results_measure", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     Rule("audit_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),
     # Reviewers save slices
     *(

@@ -9,8 +9,9 @@ from io import StringIO
 import pytest
 from django.core.management import CommandError, call_command
 
+from annotations.background.progress import UNWATCHED
 from annotations.language.ontology import Entity, Ontology
-from annotations.models import Example
+from annotations.models import Example, Job, JobKind
 from parser_service.analysis.sureness import (
     LEAST_PEOPLE,
     AnsweredForm,
@@ -28,6 +29,7 @@ from parser_service.results.answerer_rows import (
     reliability_chart,
     reliability_of,
 )
+from parser_service.results.measuring_job import measure as measure_job
 from parser_service.serving.calibrating import calibrated
 from tests.parser_service.answerers import WrittenAnswerer
 
@@ -220,6 +222,17 @@ def test_the_command_measures_with_the_oracle_alone(sample):
     call_command("evaluate_answerer", "home", "--order", "oracle", stdout=out)
 
 
+def test_a_job_measures_what_the_page_asks_for(sample, people, rene):
+    sample.run.delete()
+    answer = rene.post("/w/home/results/measure/", {"split": sample.split.pk})
+    job = Job.objects.get(kind=JobKind.MEASURE)
+    assert answer.url == f"/jobs/{job.pk}/"
+    assert measure_job(job, UNWATCHED) == {"split": "home-split", "examples": 40, "people": 0}
+    assert AnswererEvaluation.objects.get().split == sample.split
+    asked = rene.post("/api/v1/worlds/home/results/measure/", {}, "application/json")
+    assert asked.json()["id"] == job.pk
+
+
 def test_the_command_refuses_a_share_that_is_none(sample):
     with pytest.raises(CommandError) as refused:
         call_command("evaluate_answerer", "home", "--allowed-wrong", "0.9")
@@ -232,9 +245,10 @@ def test_a_world_without_a_split_is_told_so(world):
     assert refused.value.__cause__.code == "no_split"
 
 
-def test_results_and_overview_show_what_a_robot_gets(sample, people, anna):
+def test_results_and_overview_show_what_a_robot_gets(sample, people, anna, rene):
     for address in ("/w/home/", "/w/home/results/?part=validation"):
-        assert "manage.py evaluate_answerer home" in anna.get(address).content.decode()
+        assert "/w/home/results/measure/" in rene.get(address).content.decode()
+        assert "/w/home/results/measure/" not in anna.get(address).content.decode()
     said = answers_of(people, LEARNED) | answers_of(people[:4], LEARNED, FIND)
     (row,) = measure(sample, said)
     overview = anna.get("/w/home/")
