@@ -13,8 +13,8 @@ from annotations.models import User, World
 from annotations.rows.from_rows import ready_templates
 from parser_service.models import Answering, AnsweringOrder, TrainingRun
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
-from parser_service.parsers.registry import ORACLE, title_of, untrained
-from parser_service.promotions.promoting import promoted_run
+from parser_service.parsers.registry import ORACLE, title_of
+from parser_service.promotions.promoting import learned_part
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,8 @@ class AnsweringParts:
 
 def answering_parts(world: World) -> AnsweringParts:
     """Return the parts that answer in ``world`` now; none where it has neither templates nor a promoted run."""
-    order, run = answering_of(world).order, promoted_run(world)
-    if order == AnsweringOrder.ORACLE or (run is not None and run.parser in untrained()):
-        run = None
+    order = answering_of(world).order
+    run = None if order == AnsweringOrder.ORACLE else learned_part(world)
     is_asked = order != AnsweringOrder.LEARNED or run is None
     return AnsweringParts(is_asked and ready_templates(world).exists(), run)
 

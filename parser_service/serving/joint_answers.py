@@ -141,6 +141,9 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
         best["grounded"] if best else "",
         best["english"] if best else "",
         task_plan_of(form, doubts, language, slots=slots),
+        answer["decision"],
+        answer["sureness"],
+        answer["probability"],
     )
 
 

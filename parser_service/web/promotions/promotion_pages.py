@@ -133,7 +133,7 @@ def answering(request: WorldRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW)
 def parser_state(request: WorldRequest, world: World) -> HttpResponse:
     """Say which run the parse server has as the learned part: a part of other pages, which ask for it by themselves."""
-    context: dict[str, Any] = {"promoted": learned_part(world)}
+    context: dict[str, Any] = {"promoted": learned_part(world), "parts": answering_parts(world)}
     try:
         held = {each["world"]: each for each in client().parsers()}
         context["held"] = held.get(world.name, {})
