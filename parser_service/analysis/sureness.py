@@ -58,8 +58,8 @@ class Decision(StrEnum):
 class Evidence:
     """What speaks for and against one answer.
 
-    Of the oracle: ``is_exact``: it understood the utterance as written; ``heard_cost``: what it costs to hear it
-    otherwise; ``readings``: how many are equally good. Of the learned parser: the ``learned_log_probability`` of its
+    Of the oracle: ``is_exact``: it understood the words that were said, whatever noise is around them; ``heard_cost``:
+    how many changes were made to hear it so; ``readings``: how many are equally good. Of the learned parser: the ``learned_log_probability`` of its
     answer, None where its scores are none, and by how many nats it is above the second (``margin``). ``agrees``: the
     other part gives the same form; None where it was not asked or is silent.
 
@@ -113,7 +113,7 @@ WEIGHTS: dict[str, Weight] = {
     "learned_log_odds": Weight(0.7, 0.25, 1),
     "learned_without_probability": Weight(-0.7, 0.7, -1),
     "margin": Weight(0.1, 0.1, 1),
-    "agrees": Weight(1.0, 0.7, 1),
+    "agrees": Weight(1.5, 0.7, 1),
     "disagrees": Weight(-0.5, 0.7, -1),
     "not_said": Weight(-2.5, 0.7, -1),
     "left_out": Weight(-2.5, 0.7, -1),

@@ -1,4 +1,4 @@
-"""Which run answers in a world, and how it came to. ``parser_service.promotions`` alone writes these rows."""
+"""Which run is the learned part of what answers. ``parser_service.promotions`` alone writes these rows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PromotionQuerySet(models.QuerySet["Promotion"]):
         return done.order_by("-decided_at", "-pk")
 
     def present(self) -> PromotionQuerySet:
-        """Return the last one of each world: its run answers there."""
+        """Return the last one of each world: its run is the learned part there, unless its parser learns nothing."""
         of_world = Promotion.objects.promoted().filter(world=models.OuterRef("world"))
         return self.filter(pk=models.Subquery(of_world.values("pk")[:1]))
 
@@ -44,7 +44,8 @@ class PromotionQuerySet(models.QuerySet["Promotion"]):
 
 
 class Promotion(models.Model):
-    """A run that answers in its world from ``decided_at`` on, until the next one; or one proposed for it.
+    """A run that is the learned part of what answers in its world from ``decided_at`` on, until the next one; or one
+    proposed for it.
 
     ``evidence`` holds the scores of the run and of the one before it, as they were then:
     ``{"run": [score, …], "before": {"run": key, "scores": [score, …]} or null}``, where a score has

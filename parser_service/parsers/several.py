@@ -25,7 +25,8 @@ def pieces_of(
         return cut_at_joints(utterance, judge)
     if oracle.understands(utterance):
         return (Piece(0, len(utterance), utterance, True),)
-    islands, pieces = Islands(), ()
+    islands = Islands()
+    pieces: tuple[Piece, ...] = ()
     for heard in oracle.islands(utterance):
         islands = islands.union(heard)
         pieces, islands = _cut(utterance, islands, oracle, None)

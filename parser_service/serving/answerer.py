@@ -61,6 +61,8 @@ USUAL_BEAM = 5
 LINES_TOGETHER = 32  # of a request of many lines
 NOT_UNDERSTOOD = "I did not understand that."
 _NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
+# Kinds of changes that make other words of what was said; the others only leave noise out.
+_DOUBTFUL = frozenset(("sound", "spelling", "inflection", "alias", "repair", "split", "number"))
 _CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
 
@@ -447,8 +449,8 @@ class Answerer:
         margin = scores[0] - scores[1] if None not in scores and len(scores) > 1 else None
         evidence = Evidence(
             part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
-            is_exact=is_oracle and best.candidate.score == 0,
-            heard_cost=-best.candidate.score if is_oracle else 0.0,
+            is_exact=is_oracle and not any(each.kind in _DOUBTFUL for each in best.candidate.heard),
+            heard_cost=float(len(best.candidate.heard)) if is_oracle else 0.0,
             readings=sum(each.candidate.score == best.candidate.score for each in readings),
             learned_log_probability=None if is_oracle else scores[0],
             margin=margin,
@@ -497,7 +499,7 @@ class Answerer:
                 return str(first["spoken"])
             case Decision.CONFIRM:
                 return shall_i(first["english"])
-            case Decision.ASK:
+            case Decision.ASK if first:
                 asked = [slot["question"] for slot in first["open_slots"]]
                 asked += [each["message"] for each in first["plan"]["problems"]]
                 return next(iter(asked), shall_i(first["english"]))

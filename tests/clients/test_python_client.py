@@ -59,7 +59,12 @@ def test_several_commands_become_one_plan(home):
         ["find the red cup", "bring me the flurb"], {("kitchen", "operator"): 3.0}
     )
     assert {number for commands in joint.serves for number in commands} == {1, 2}
-    assert joint.length <= joint.length_before and joint.spoken
+    assert joint.length <= joint.length_before and joint.spoken and joint.unit == "m"
+    assert joint.ends_at == {"kind": "operator"} and not joint.not_understood
+    assert {"way_back", "walk"} <= {note.code for note in joint.notes}
+    assert joint.is_interleaved is bool(joint.raw["joint_plan"]["interleaved"])
+    robust = home.behavior_tree('(go "kitchen")', in_primitives=True, tries=5, seconds=2.5)
+    assert 'num_attempts="5"' in robust and 'msec="2500"' in robust
     assert [each.commands for each in joint.plan.problems] == [(2,)]
     with pytest.raises(Refused):
         home.joint_plan(["find the red cup"] * 4)

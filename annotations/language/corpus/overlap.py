@@ -52,8 +52,8 @@ class Overlap:
 def overlap_of(
     asked: Mapping[str, int], taught: Mapping[str, int], new_commands: int = 0
 ) -> Overlap:
-    """Return the overlap of forms that ``asked`` and ``taught`` count pairs of."""
-    forms = (FormOverlap(count, taught.get(form, 0)) for form, count in asked.items())
+    """Return the overlap of forms that ``asked`` and ``taught`` count pairs of, in the order of the forms."""
+    forms = (FormOverlap(count, taught.get(form, 0)) for form, count in sorted(asked.items()))
     return Overlap(tuple(forms), new_commands)
 
 

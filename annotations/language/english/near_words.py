@@ -33,7 +33,7 @@ MOST_EDITS = 3
 # What it costs to hear another word. Words that sound the same are equally near, however they are spelt.
 SAME_SOUND, SAME_STEM, EDITED, AN_EDIT = 5, 5, 5, 2
 OF_A_WORD = 3  # more where what was said is a word itself
-LOOSE = 2  # more where only the words beside it make it likely
+LOOSE = 3  # more where only the words beside it make it likely
 LONGEST = 24  # letters of a word that is compared
 SHORTEST = 3
 # Words that tie others together; recognisers seldom put them for a noun or a verb.
@@ -143,12 +143,14 @@ class NearWords:
 
 
 def _by_sound(said: str, word: str) -> Near | None:
-    if OSA.distance(said, word) > min(MOST_EDITS, max(len(said), len(word)) // 2):
+    edits = OSA.distance(said, word)
+    if edits > min(MOST_EDITS, max(len(said), len(word)) // 2):
         return None
     more = OF_A_WORD if is_common(said) else 0
+    kind = "sound" if more or edits > _most_edits(said) else "spelling"
     if sounds_like(said, word):
-        return Near(word, "sound", SAME_SOUND + more)
-    return Near(word, "sound", SAME_SOUND + more + LOOSE, not more)
+        return Near(word, kind, SAME_SOUND + more)
+    return Near(word, kind, SAME_SOUND + more + LOOSE, not more)
 
 
 def _by_letters(said: str, word: str, edits: int, most: int) -> Near | None:
@@ -200,9 +202,12 @@ def _vowels(word: str) -> tuple[str, ...]:
     groups = _VOWELS.findall(word)
     if is_long and len(groups) == 1 and len(groups[0]) == 1:
         return (_SOUNDS_OF[groups[0]][0].lower(),)
-    return tuple(
+    sounds = [
         _SOUNDS_OF.get(group, _SOUNDS_OF.get(group[:2], _SOUNDS_OF[group[0]])) for group in groups
-    )
+    ]
+    if word.endswith(("ear", "ears")):
+        sounds[-1] += "Aa"  # pear, but also near
+    return tuple(sounds)
 
 
 def sounds_like(one: str, other: str) -> bool:

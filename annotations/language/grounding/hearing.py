@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from annotations.language.english import (
     ARTICLES,
@@ -31,6 +32,7 @@ from annotations.language.english import (
     HEARD_CLOSINGS,
     HEARD_OPENINGS,
     KEPT_WORDS,
+    LIKE_CONTRACTIONS,
     NUMBERS,
     OPEN_WORDS,
     PLACE_PREPOSITIONS,
@@ -57,7 +59,7 @@ from annotations.language.grounding.utterance_lattice import (
 )
 
 # Costs, beside those of near words.
-FILLER, REPEATED, REPAIRED, COURTESY = 1, 3, 4, 0  # more than what passing over costs
+FILLER, REPEATED, REPAIRED = 1, 1, 4  # more than what passing over costs
 ARTICLE, CONTRACTED, JOINED, COUNTED, ALIAS = 3, 2, 3, 2, 4
 MOST_REPAIRED = 6  # words that a correction takes back
 MOST_REPEATED = 4  # words that are said twice
@@ -65,6 +67,7 @@ MOST_IN_A_NAME = 3  # changes in one name
 MOST_TOKENS = 120  # of an utterance; a longer one is heard as it is
 MOST_RIVALS = 4  # names that are equally near
 SHORTEST_PART = 2  # letters of each of two words that were taken for one
+LONGEST_SPLIT = 40  # letters of such a word
 _INNER = 16  # places for the words of one token
 _BLANK = " "
 
@@ -75,6 +78,7 @@ _FUNCTION_WORDS = BOUNDARIES | DETERMINERS | PLACE_PREPOSITIONS
 _LIKE_PREPOSITIONS = frozenset(("two", "2", "four", "4"))
 _CUT_OFF = frozenset("-‐‑–—…")
 _WORD = re.compile(r"\w")
+_COMMA = re.compile(" ?,?")
 _LEFT_OVER = re.compile(r" ?([,;:])(?: ?[,;:])*+")
 _APOSTROPHE = re.compile("['’]")
 
@@ -165,9 +169,9 @@ class HearingReader(UtteranceReader):
         return frozenset(self.words) | {word for tokens in self._called for word in tokens}
 
     @cached_property
-    def trie(self) -> dict[str, dict]:  # type: ignore[type-arg]
+    def trie(self) -> dict[str, Any]:
         """The words of names → the next words. What is under "" are the keys of ``called`` that end there."""
-        root: dict[str, dict] = {}  # type: ignore[type-arg]
+        root: dict[str, Any] = {}
         for tokens in self._called:
             for path in {tokens, ("".join(tokens),)}:
                 node = root
@@ -311,7 +315,7 @@ class _Noisy(Everything):
         """Yield contractions, and words that are none and are near one name alone."""
         for place in range(len(self.tokens)):
             for first, second in self._written_out(place):
-                if first in OPEN_WORDS:
+                if first in OPEN_WORDS and self.folded[place] not in LIKE_CONTRACTIONS:
                     yield place, place + 1, "contraction", f"{first} {second}"
                     break
         inside = {each for start, stop in self._named_at for each in range(start, stop)}
@@ -346,7 +350,8 @@ class _Noisy(Everything):
                 and fold(self.utterance[start + cut : end]) in known
             )
             is_word = folded in known or is_common(folded) or folded in self.reader.names
-            if not is_word and len(folded) == end - start and (cut := next(cuts, None)):
+            is_short = len(folded) == end - start <= LONGEST_SPLIT
+            if is_short and not is_word and (cut := next(cuts, None)):
                 words = f"{self.utterance[start:cut]} {self.utterance[cut:end]}"
                 changes += self._change("split", place, place + 1, words)
                 tokens += [(start, cut), (cut, end)]
@@ -364,7 +369,13 @@ class _Noisy(Everything):
 
     def _near(self, table: NearWords, place: int) -> Iterator[Near]:
         if self._may_be_another(place):
-            yield from table.near(self.folded[place])
+            said = self.folded[place]
+            # "bring me the objects" asks for several; "a drinks" for one.
+            is_several = said.endswith("s") and {*self.folded[:place][-1:]}.isdisjoint(("a", "an"))
+            for near in table.near(said):
+                is_one = near.kind == "inflection" and not near.word.endswith("s")
+                if not (place and is_several and is_one):
+                    yield near
         elif self._is_counting_nothing(place):
             word = _WORDS_OF_NUMBERS.get(self.folded[place], self.folded[place])
             yield from (each for each in table.near(word) if each.kind == "sound")
@@ -406,6 +417,9 @@ class _Noisy(Everything):
         """Yield what a contraction stands for."""
         text = self.texts[place].casefold()
         base, *ending = _APOSTROPHE.split(text)
+        if text in LIKE_CONTRACTIONS:
+            first, second = LIKE_CONTRACTIONS[text].split()
+            yield first, second
         if len(ending) == 1 and ending[0] in CONTRACTIONS:
             yield fold(base), CONTRACTIONS[ending[0]]
         for short, long in CONTRACTIONS.items():
@@ -511,9 +525,9 @@ class _Noisy(Everything):
         self,
         start: int,
         place: int,
-        node: dict[str, dict],
-        way: _Way,  # type: ignore[type-arg]
-    ) -> Iterator[tuple[int, dict[str, dict], _Way]]:  # type: ignore[type-arg]
+        node: dict[str, Any],
+        way: _Way,
+    ) -> Iterator[tuple[int, dict[str, Any], _Way]]:
         folded = self.folded[place]
         if not self._is_word(place):
             if place > start:
@@ -549,7 +563,9 @@ class _Noisy(Everything):
             if both in node and place + 2 - start > 1:
                 change = (place, place + 2, "joined", both)
                 yield place + 2, node[both], way.then(JOINED, change)
-            for near in self.reader.near_name_words.near(both):
+            parts = {folded, self.folded[place + 1]}
+            is_free = parts.isdisjoint(_FUNCTION_WORDS) and parts.isdisjoint(self.reader.names)
+            for near in self.reader.near_name_words.near(both) if is_free else ():
                 if near.word in node and near.is_sure and near.kind != "inflection":
                     change = (place, place + 2, "joined", near.word)
                     yield place + 2, node[near.word], way.then(near.cost + JOINED, change)
@@ -583,7 +599,7 @@ class _Noisy(Everything):
         for start, stop in ranges:
             is_filler = tuple(self.folded[start:stop]) in _FILLERS
             kind = "filler" if is_filler else "courtesy"
-            yield start, stop, kind, SKIPPED * (stop - start) + COURTESY
+            yield start, stop, kind, SKIPPED * (stop - start)
         for place, folded in enumerate(self.folded):
             if folded in ARTICLES:
                 yield place, place + 1, "article", ARTICLE
@@ -687,8 +703,13 @@ def _changed(utterance: str, changes: Sequence[HeardChange]) -> str:
     """Return an utterance with changes made that are in its order; signs that are left over go."""
     pieces, end = [], 0
     for change in changes:
-        pieces += [utterance[end : change.start], change.heard]
-        end = change.end
+        before, after = utterance[end : change.start], change.end
+        # The commas around a filler go with it.
+        if change.kind == "filler" and before.rstrip().endswith(","):
+            before, after = before.rstrip(" ,") + " ", change.end
+            after += len(_COMMA.match(utterance, change.end)[0])  # type: ignore[index]
+        pieces += [before, change.heard]
+        end = after
     text = " ".join("".join((*pieces, utterance[end:])).split())
     return _LEFT_OVER.sub(r"\1", text).lstrip(" ,;:.!?-")
 

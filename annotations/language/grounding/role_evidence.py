@@ -100,7 +100,7 @@ class Evidence:
         return math.log(share / anywhere)
 
     def _learn_derivation(self, symbols: Symbols, form: Form) -> None:
-        for path, wildcard in _wildcards(form):
+        for path, wildcard in wildcards_of(form):
             if not wildcard.obfuscated:
                 self._wildcards[role_of(form, path).exact].add(wildcard)
         self._learn(*as_pair(symbols, form))
@@ -143,11 +143,12 @@ def default_evidence() -> Evidence:
     return Evidence()
 
 
-def _wildcards(form: Form, path: SlotPath = ()) -> Iterator[tuple[SlotPath, Wildcard]]:
+def wildcards_of(form: Form, path: SlotPath = ()) -> Iterator[tuple[SlotPath, Wildcard]]:
+    """Yield the wildcards of a form with the ways to them, in order."""
     if isinstance(form, Wildcard):
         yield path, form
     for place, child in enumerate(children(form)):
-        yield from _wildcards(child, (*path, place))
+        yield from wildcards_of(child, (*path, place))
 
 
 def _number(form: Form, numbers: Mapping[tuple[str, int | None], int]) -> Form:

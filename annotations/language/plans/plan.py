@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -118,6 +118,22 @@ class PlanOf(Generic[StepT, ProblemT]):
 @dataclass(frozen=True, slots=True)
 class Plan(PlanOf[Step, PlanProblem]):
     """The actions of a form; its data follow ``plan_schema``."""
+
+    @property
+    def unresolved(self) -> tuple[int, ...]:
+        """The numbers of the steps that do not ground: those with a problem, and those that wait for what a person
+        answers. A robot can do the others."""
+        asked = {step.number for step in self.steps if step.predicate == ASK}
+        troubled = {problem.step for problem in self.problems}
+        return tuple(
+            step.number
+            for step in self.steps
+            if step.number not in asked
+            and (
+                step.number in troubled
+                or any(not asked.isdisjoint(_results_in(value)) for _, value in step.arguments)
+            )
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +258,21 @@ class Operator:
 
 
 Value: TypeAlias = "Named | Words | Number | Described | Referred | StepResult | OpenValue"
+
+
+def _results_in(value: Value) -> Iterator[int]:
+    """Yield the numbers of the steps whose results a value holds."""
+    match value:
+        case StepResult(step):
+            yield step
+        case Referred(_, inner):
+            yield from _results_in(inner)
+        case Described(conditions=conditions, of=of):
+            for condition in conditions:
+                for each in condition.values:
+                    yield from _results_in(each)
+            if of is not None:
+                yield from _results_in(of)
 
 
 @cache

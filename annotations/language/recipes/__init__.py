@@ -14,6 +14,7 @@ from annotations.language.recipes.book import (
 from annotations.language.recipes.comparing import plan_key, same_plan
 from annotations.language.recipes.habitual_places import UsualPlaces, usual_places
 from annotations.language.recipes.joint_plans import (
+    METRES,
     MOST_COMMANDS,
     Distances,
     Interleaving,
@@ -51,6 +52,7 @@ __all__ = [
     "AFTER_COMMANDS",
     "DEFAULT_BOOK",
     "MAX_ROW",
+    "METRES",
     "MOST_COMMANDS",
     "ActionPattern",
     "Distances",

@@ -16,7 +16,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, starmap
+from itertools import compress, groupby, pairwise, starmap
 from typing import NamedTuple
 
 from annotations.language.english import (
@@ -84,8 +84,9 @@ class Islands:
 def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[Piece, ...]:
     """Return the commands of an utterance, in its order, and what may be one and is not understood.
 
-    What is forbidden, has a condition or is taken back is not understood, and neither is an utterance with a single
-    island, unless the rest only counts ("Command one: ..."): it may be said of something else.
+    What is forbidden, has a condition or is taken back is not understood. An utterance with a single island comes
+    back whole, and is not understood, unless the rest only counts ("Command one: ...") or is held back: it may be
+    one command in other words, or said of something else.
 
     Args:
         islands: what the grammar finds.
@@ -102,6 +103,7 @@ def cut(utterance: str, islands: Islands, judge: Judge | None = None) -> tuple[P
 _WORD = re.compile(r"\w+(?:['’-]\w+)*")
 _CONTRACTED = re.compile(r"(?<!^let)['’](?:s|re|ve|ll|d|m)$")
 _SENTENCE_END = re.compile(r"[.!?…](?=\s|$)|[;\n]")
+_NUMBERED = re.compile(r"no\.?\s*\d", re.IGNORECASE)  # "task no. 2" forbids nothing
 _SIGN = re.compile(r"[^\w\s'’]")
 _AROUND = " \t\n.,;:!?"
 
@@ -137,11 +139,47 @@ class _Cut:
         held = self._held()
         chosen = self._choose(held)
         ranges = sorted([*chosen, *held])
-        ranges = sorted([*ranges, *self._unknown(ranges)])
-        ranges = self._joined(ranges)
-        if len(ranges) <= 1 and not self._is_counted(ranges):
+        ranges = self._joined(sorted([*ranges, *self._unknown(ranges)]))
+        islands = [each.first for each in chosen]
+        rests = {each for each in ranges if self._is_rest(each, islands)}
+        n_commands = len(ranges) - len(rests) - sum(each.is_held for each in ranges)
+        if n_commands < 2 and (rests or (len(ranges) < 2 and not self._is_counted(ranges))):
             ranges = [_Range(0, len(self.words), is_held=bool(held))]
+        elif judge:
+            ranges = self._judge_sentences(ranges, rests, judge)
         return tuple(piece for each in ranges for piece in self._as_pieces(each, judge))
+
+    def _is_rest(self, words: _Range, islands: Sequence[int]) -> bool:
+        """Whether no island is in a range, and no reason not to take it for a part of the command beside it."""
+        has_island = bisect_left(islands, words.first) < bisect_left(islands, words.last)
+        return not (has_island or words.is_held or words.reach)
+
+    def _judge_sentences(
+        self, ranges: Sequence[_Range], rests: Collection[_Range], judge: Judge
+    ) -> list[_Range]:
+        """Join what a sentence holds where it is one command in other words: "go to the galley and fetch some tea"."""
+        groups = [
+            list(group) for _, group in groupby(ranges, lambda each: self._sentence(each.first))
+        ]
+        asked = [
+            len(each) > 1
+            and not any(one.is_held for one in each)
+            and any(one in rests for one in each)
+            for each in groups
+        ]
+        texts = [
+            self.utterance[self.words[each[0].first][0] : self.words[each[-1].last - 1][1]]
+            for each in groups
+        ]
+        scores = iter(judge(list(compress(texts, asked))) if any(asked) else ())
+        judged: list[_Range] = []
+        for group, is_asked in zip(groups, asked, strict=True):
+            if is_asked and next(scores) is not None:
+                first, last = group[0].first, group[-1].last
+                self.places[first, last] = self.words[first][0], self.words[last - 1][1]
+                group = [_Range(first, last, is_command=True)]
+            judged += group
+        return judged
 
     # Sentences and signs
 
@@ -191,10 +229,12 @@ class _Cut:
         """Return what is held back: from the words that do so to the end of the sentence, or all of it."""
         ranges: list[_Range] = []
         for held in holds_in(self.utterance):
+            if _NUMBERED.match(self.utterance, held.start):
+                continue
             word = bisect_right(self.starts, held.start) - 1
             first, last = self._sentence(word)
-            if held.code == Qualified.FORBIDDEN and self._is_parted(word):
-                first = word
+            if held.code == Qualified.FORBIDDEN:
+                first = next(each for each in range(word, -1, -1) if self._is_parted(each))
             if held.code == Qualified.TAKEN_BACK and first:
                 first, _ = self._sentence(first - 1)
             ranges.append(_Range(first, last, is_held=True))
@@ -217,19 +257,19 @@ class _Cut:
         for place in range(1, len(self.words) + 1):
             if blocked[place - 1]:
                 free = place
-            options = [(best[place - 1][0], best[place - 1][1], None)]
-            for span in ending.get(place, ()):
-                if span[0] >= free:
-                    covered, fewer, _ = best[span[0]]
-                    options.append((covered + place - span[0], fewer - 1, span))
-            best.append(max(options, key=lambda each: (each[0], each[1])))
+            best.append((*best[place - 1][:2], None))
+            for first, last in ending.get(place, ()):
+                if first >= free:
+                    covered, fewer, _ = best[first]
+                    option = covered + last - first, fewer - 1, (first, last)
+                    best[place] = max(best[place], option, key=lambda each: each[:2])
         chosen: list[_Range] = []
         place = len(self.words)
         while place:
-            span = best[place][2]
-            if span:
-                chosen.append(_Range(*span, is_command=True))
-            place = span[0] if span else place - 1
+            taken = best[place][2]
+            if taken:
+                chosen.append(_Range(*taken, is_command=True))
+            place = taken[0] if taken else place - 1
         return chosen[::-1]
 
     def _holds_end(self, first: int, last: int) -> bool:
@@ -252,13 +292,17 @@ class _Cut:
     def _reach(self, first: int, last: int) -> int:
         """Return up to where what follows is told or asked rather than ordered, or has a condition; 0: nowhere."""
         said = self.said[first:last]
-        if not self._is_parted(last):
-            is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
-            is_asked = self._is_parted(first) and said[0] in _QUESTIONS
-            if (is_told and COMMAND_NOUNS.isdisjoint(said)) or is_asked:
-                return self._sentence(first)[1]
+        is_attached = not self._is_parted(last)
+        is_told = not TELLING_WORDS.isdisjoint(said) and said[-2:] != ["you", "to"]
+        is_told = is_told and is_attached and COMMAND_NOUNS.isdisjoint(said)
+        is_asked = is_attached and self._is_parted(first) and said[0] in _QUESTIONS
+        if is_told or is_asked or said[-1] in TELLING_WORDS:
+            return self._sentence(first)[1]
         opening = next((each for each in said if each not in _PARTING), "")
-        if opening in _WHEN and (_FUNCTION_WHEN | _COUNTING).isdisjoint(said):
+        is_timed = opening in _WHEN and (_DONE_WORDS | _COUNTING).isdisjoint(said)
+        if is_timed or (
+            opening in _SUBORDINATING and not self.named.isdisjoint(range(first, last))
+        ):
             return min(last + 1, self._sentence(first)[1])
         return 0
 
@@ -288,7 +332,7 @@ class _Cut:
         return any(starmap(self._begins_command, pairwise(parts)))
 
     def _is_function(self, word: str) -> bool:
-        return word in _FUNCTION or word.isdecimal()
+        return word in _FUNCTION or word.isdecimal() or len(word) == 1
 
     def _begins_command(self, first: int, last: int) -> bool:
         """Whether words begin as a command does: by a word of the grammar, or "turn off the lights"."""
@@ -395,8 +439,9 @@ _DEFINITE = DETERMINERS - (ARTICLES - {"the"}) - {"this", "that", "any"}
 _PREDICATING = frozenset({"is", "are", "was", "will", "would", "should", "has"})  # "... is my wish"
 _QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
 _WHEN = frozenset({"when", "once", "while", "until", "till"})
-# "When you are done", "once that is finished" speak of the command before.
-_FUNCTION_WHEN = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything"}
+_SUBORDINATING = frozenset({"after", "before", "should"})
+# "When you are done", "once that is finished", "once more" speak of the command before.
+_DONE_WORDS = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything", "more"}
 
 
 # Without a grammar

@@ -29,8 +29,10 @@ from annotations.language.requests.qualifying import says_number
 from annotations.language.requests.word_use import Place, Role, WordUse, role_at
 
 EXCHANGED = 1.5  # log odds by which two mentions fit better where the other one is
-ELSEWHERE = 5.0  # log odds by which a mention fits another role of the same action better
+ELSEWHERE = 4.0  # log odds by which a mention fits another role of the same action better
 PLACE = "location"  # and what is alike: what may be of somebody, of something, or a destination
+GOAL = "argument 1"
+MOST_MENTIONS = 8  # of one value that are compared
 MOST_SLOTS = 16  # that are compared in pairs
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)?|[^\w\s]")
 
@@ -98,13 +100,19 @@ def fit(
     if isinstance(form, Unknown):
         return Fit()
     fillers = {each.casefold() for slot in slots for each in _fillers(slot)}
+    fillers |= {str(each.value).casefold() for each in walk(form) if isinstance(each, Constant)}
     unused = [span for span in heard.spans if span.value.casefold() not in fillers]
     not_said = []
     for slot in slots:
         if not slot.entity_class or slot.is_named or slot.value is not None:
             continue
         other = next(
-            (each for each in unused if slot.entity_class in _classes(each, heard, ontology)), None
+            (
+                each
+                for each in unused[:MOST_SLOTS]
+                if slot.entity_class in _classes(each, heard, ontology)
+            ),
+            None,
         )
         if other is None:
             not_said.append(slot)
@@ -249,7 +257,7 @@ def _filled(
                 if span.value.casefold() == value
             )
             if mine:
-                filled.append(_Filled(slot, role_at(form, slot.path), mine))
+                filled.append(_Filled(slot, role_at(form, slot.path), mine[:MOST_MENTIONS]))
     return filled[:MOST_SLOTS]
 
 
@@ -267,7 +275,8 @@ def _exchanges(
                 found |= {one.slot.path, other.slot.path}
                 yield Exchange((one.slot, other.slot), nats)
     for each in filled:
-        if each.slot.path in found or not are_alike(each.slot.entity_class, PLACE):
+        is_goal = each.role.similar == GOAL  # to go there, and to meet somebody there, is the same
+        if is_goal or each.slot.path in found or not are_alike(each.slot.entity_class, PLACE):
             continue
         taken = {other.role.similar for other in filled}
         rivals = [

@@ -13,6 +13,7 @@ from enum import StrEnum
 from itertools import islice
 
 from annotations.language.english import (
+    COMMAND_NOUNS,
     CONDITIONAL_PHRASES,
     COUNTING_PHRASES,
     EXCUSED_PHRASES,
@@ -23,6 +24,7 @@ from annotations.language.english import (
     ORDERING_PHRASES,
     POLITE_AFTER_IF,
     POLITE_BEFORE_IF,
+    SEQUENCE_WORDS,
     SEVERAL_PHRASES,
     SUBJECT_WORDS,
     TAKING_BACK_PHRASES,
@@ -93,7 +95,11 @@ _TAKING_BACK = re.compile(_any_of(TAKING_BACK_PHRASES), re.IGNORECASE)
 # "should Robin ask": somebody else at the beginning of a sentence.
 _SHOULD = r"(?:^|(?<=[.,;:!?]\s))should (?!you\b|i\b|we\b)(?=\w)"
 # "when Robin comes", "once they are done": what somebody else does first.
-_WHEN = r"\b(?:when|once) (?:he|she|they|somebody|someone|anybody|anyone|nobody|the \w+|_+)(?= \w)"
+# "When the first is done" speaks of a command.
+_WHEN = (
+    r"\b(?:when|once) (?:he|she|they|somebody|someone|anybody|anyone|nobody"
+    rf"|the (?!{_any_of(COMMAND_NOUNS | SEQUENCE_WORDS)})\w+|_+)(?= \w)"
+)
 _CONDITION = re.compile(rf"{_any_of(CONDITIONAL_PHRASES)}|{_SHOULD}|{_WHEN}", re.IGNORECASE)
 _IF = re.compile(
     rf"(?P<wish>{_any_of(POLITE_BEFORE_IF)},? )?\bif\b(?P<polite> {_any_of(POLITE_AFTER_IF)})?",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
 from heapq import nsmallest
 
@@ -132,7 +132,7 @@ class NearCommands:
         A word that no command has counts as the one that is spelt alike. Linear in the words and the commands.
         """
         words = {self._read(word) for word in set(_WORD.findall(heard.command.casefold()))}
-        shared: Counter[int] = Counter()
+        shared: defaultdict[int, float] = defaultdict(float)
         for word in words:
             for number in self._with_word.get(word, ()):
                 shared[number] += self._weights[word]

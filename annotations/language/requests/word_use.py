@@ -18,7 +18,9 @@ from annotations.language.english import (
     BOUNDARIES,
     COURTESY_WORDS,
     DETERMINERS,
+    LIGHT_WORDS,
     NEAR_SYNONYMS,
+    NO_COMMAND_WORDS,
     NUMBERS,
     PERSON_WORDS,
     PLACE_PREPOSITIONS,
@@ -71,6 +73,8 @@ _NAMES_NOTHING = frozenset(
         *THING_WORDS,
         *PLACE_PREPOSITIONS,
         *COURTESY_WORDS,
+        *LIGHT_WORDS,
+        *NO_COMMAND_WORDS,
         *NUMBERS,
     )
 )
@@ -270,7 +274,10 @@ def _meanings(
         if found:
             meanings[word] = frozenset(min(found)[2])
     for name, words in PREDICATE_WORDS.items():
-        for word in words if name in declared else ():
+        for word in words:
+            if name not in declared:  # a class of entities may have them, such as poses
+                meanings.pop(word, None)
+                continue
             commands = with_word.get(word, 0)
             asked = {
                 each

@@ -78,22 +78,37 @@ class Workbench:
         return TaskPlan.from_json(value["task_plan"])
 
     def joint_plan(
-        self, utterances: Iterable[str], distances: Mapping[tuple[str, str], float] | None = None
+        self,
+        utterances: Iterable[str],
+        distances: Mapping[tuple[str, str], float] | None = None,
+        unit: str = "m",
     ) -> JointPlan:
         """Return one plan of up to three commands.
 
-        ``distances`` are those of pairs of places, in any unit; ``operator`` is where the person is.
+        ``distances`` are those of pairs of places, in ``unit``; ``operator`` is where the person is. Without any the
+        walk counts rooms.
         """
         table = [
             {"one": one, "other": other, "distance": distance}
             for (one, other), distance in (distances or {}).items()
         ]
-        body = {"utterances": list(utterances), "distances": table}
+        body = {"utterances": list(utterances), "distances": table, "unit": unit}
         return JointPlan.from_json(self._transport.post(f"{self._path}joint-plan/", body))
 
-    def behavior_tree(self, form: str, in_primitives: bool = False) -> str:
-        """Return the plan of a form as XML for BehaviorTree.CPP 4; of its actions, or in the robot's primitives."""
-        body = json.dumps({"form": form, "as": "xml"}).encode()
+    def behavior_tree(
+        self,
+        form: str,
+        in_primitives: bool = False,
+        tries: int | None = None,
+        seconds: float | None = None,
+    ) -> str:
+        """Return the plan of a form as XML for BehaviorTree.CPP 4; of its actions, or in the robot's primitives.
+
+        With ``tries`` or ``seconds`` the tree tries each step so often, each time so long at most, and hands a step
+        that fails to the action ``step_failed``.
+        """
+        robust = {name: n for name, n in (("tries", tries), ("seconds", seconds)) if n is not None}
+        body = json.dumps({"form": form, "as": "xml", "robust": bool(robust), **robust}).encode()
         path = f"{self._path}task-plan/" if in_primitives else f"{self._path}plan/"
         try:
             with self._transport.open("POST", path, body) as answer:

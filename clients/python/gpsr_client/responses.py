@@ -134,11 +134,24 @@ class Interleaving:
 
 
 @dataclass(frozen=True)
+class Note:
+    """What to know about commands of a joint plan.
+
+    ``code`` is ``not_understood``, ``not_interleaved``, ``way_back`` or ``walk``.
+    """
+
+    code: str
+    commands: tuple[int, ...]
+    message: str
+
+
+@dataclass(frozen=True)
 class JointPlan:
     """One plan of several commands, which count from 1.
 
     ``serves`` has the commands of each step. ``length_before`` is the walk of one command after the other,
-    ``length`` that of this plan.
+    ``length`` that of this plan, both in ``unit`` and with the way to ``ends_at``. ``interleaved`` has the pairs of
+    commands that are done together. A command that was not understood is left out and has a note.
     """
 
     plan: TaskPlan
@@ -146,8 +159,22 @@ class JointPlan:
     interleavings: tuple[Interleaving, ...]
     length_before: float
     length: float
+    unit: str
+    interleaved: tuple[tuple[int, ...], ...]
+    ends_at: dict[str, Any] | None
+    notes: tuple[Note, ...]
     spoken: str
     raw: dict[str, Any] = field(repr=False, compare=False)
+
+    @property
+    def is_interleaved(self) -> bool:
+        return bool(self.interleaved)
+
+    @property
+    def not_understood(self) -> tuple[int, ...]:
+        """The commands that the plan leaves out."""
+        missed = (each.commands for each in self.notes if each.code == "not_understood")
+        return tuple(number for numbers in missed for number in numbers)
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> JointPlan:
@@ -163,6 +190,13 @@ class JointPlan:
             ),
             joint["length_before"],
             joint["length"],
+            joint["unit"],
+            tuple(map(tuple, joint["interleaved"])),
+            joint["ends_at"],
+            tuple(
+                Note(each["code"], tuple(each["commands"]), each["message"])
+                for each in joint["notes"]
+            ),
             value["spoken"],
             value,
         )

@@ -64,6 +64,7 @@ class Fitting:
         self.decision = DecisionRule()
         self._clock = Clock(config.minutes, config.threads or torch.get_num_threads())
         self._seconds_to_encode = 0.0  # all examples and glosses
+        self._done = 0.0
 
     @property
     def ranked(self) -> RankedForms:
@@ -156,9 +157,7 @@ class Fitting:
         """Take fewer steps where those that are left would last too long, and say so."""
         training = self._trainings[self._at]
         left = training.span.total - training.step
-        validations = VALIDATIONS - self._epoch() * VALIDATIONS // self._passes
-        others = 2 * (len(self._trainings) - 1 - self._at)  # novelty, and the start of the next one
-        steps = self._clock.steps_left((validations + others) * self._seconds_to_encode)
+        steps = self._clock.steps_left(self._seconds_beside_steps())
         if left <= TOLERANCE * steps:
             return
         self._set_spans(cut([each.span for each in self._trainings], training.step, steps))
@@ -166,6 +165,26 @@ class Fitting:
             f"A step takes {self._clock.a_step:.1f} s, so {self.config.minutes:g} minutes are not enough for "
             f"{training.step + left:,} of them: the training ends after {training.span.total:,}."
         )
+
+    def _seconds_beside_steps(self) -> float:
+        """Estimate the seconds that validating and encoding will still take."""
+        validations = VALIDATIONS - self._epoch() * VALIDATIONS // self._passes
+        others = 2 * (len(self._trainings) - 1 - self._at)  # novelty, and the start of the next one
+        return (validations + others) * self._seconds_to_encode
+
+    def _progress(self) -> float:
+        """Return how much of the work is done, from 0 to 1.
+
+        It is by time once steps were timed: preparing takes time too, and the time left is to be that of the steps
+        that will be taken. Before, it is by steps. It never goes back.
+        """
+        step, total = self._trainings[self._at].step, self._trainings[-1].span.end
+        done = step / total
+        if self._clock.a_step and step < total:
+            left = (total - step) * self._clock.a_step + self._seconds_beside_steps()
+            done = self._clock.spent / (self._clock.spent + left)
+        self._done = max(self._done, done)
+        return self._done
 
     def _set_spans(self, spans: Sequence[StepSpan]) -> None:
         for training, span in zip(self._trainings, spans, strict=True):
@@ -180,9 +199,8 @@ class Fitting:
 
     def _after_step(self) -> None:
         self._keep_to_time()
-        step, total = self._trainings[self._at].step, self._trainings[-1].span.end
         epoch = min(self._epoch() + 1, self._passes)
-        self.observe.progress(step / total, f"epoch {epoch} of {self._passes}")
+        self.observe.progress(self._progress(), f"epoch {epoch} of {self._passes}")
         if self.observe.is_checkpoint_due():
             # The newest average counts as the best: the last one becomes the parser, whatever a small
             # validation part says.

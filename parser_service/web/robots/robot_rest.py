@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from django.db.models import QuerySet
-from django.http import HttpResponse, HttpResponseBase
+from django.http import HttpResponseBase
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
@@ -16,7 +16,7 @@ from rest_framework.response import Response
 from annotations.language.errors import LanguageError
 from annotations.language.forms import read_form
 from annotations.language.limits import MAX_FORM
-from annotations.language.plans import make_plan, to_behavior_tree
+from annotations.language.plans import make_plan
 from annotations.language.recipes import spoken
 from annotations.models import Duty, Scope
 from annotations.web.rest.fields import Fields
@@ -34,16 +34,14 @@ from parser_service.robots.action_naming import (
 )
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.preparing import WorldLanguage
+from parser_service.web.robots.tree_query import TreeQuery, tree_answer
 
 
-class PlanQuery(Fields):
-    """A form with entities, such as ``grounded`` of a parse; ``as`` xml asks for a behaviour tree."""
+class PlanQuery(TreeQuery):
+    """A form with entities, such as ``grounded`` of a parse; ``as`` xml asks for a behaviour tree. With ``robust`` it
+    tries each step up to ``tries`` times, each for at most ``seconds``."""
 
     form = serializers.CharField(max_length=MAX_FORM)
-
-    def get_fields(self) -> dict[str, Any]:
-        as_ = serializers.ChoiceField(choices=["json", "xml"], default="json")
-        return {**super().get_fields(), "as": as_}
 
 
 class PlanRoute(WorldRoute):
@@ -69,7 +67,7 @@ class PlanRoute(WorldRoute):
         language = WorldLanguage.of(self.world)
         plan = make_plan(form, language.ontology, language.predicates, language.action_names)
         if sent["as"] == "xml":
-            return HttpResponse(to_behavior_tree(plan), content_type="application/xml")
+            return tree_answer(plan, sent)
         return Response(plan.as_json())
 
 
@@ -102,7 +100,7 @@ class TaskPlanRoute(WorldRoute):
             raise refusal_of_text(error, "form") from error
         task_plan = task_plan_of(form, (), WorldLanguage.of(self.world))
         if sent["as"] == "xml":
-            return HttpResponse(to_behavior_tree(task_plan), content_type="application/xml")
+            return tree_answer(task_plan, sent)
         return Response({"task_plan": task_plan.as_json(), "spoken": spoken(task_plan)})
 
 

@@ -12,7 +12,7 @@ from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
 from annotations.language.errors import Refusal
-from annotations.language.recipes import MOST_COMMANDS
+from annotations.language.recipes import MOST_COMMANDS, JointPlan, say_length
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
@@ -50,7 +50,7 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
             utterances = [each for text in texts.values() for each in commands_in(world, text)]
             answer = plan_together(world, utterances)
             curl = curl_command(request, world, "joint-plan", {"utterances": utterances})
-            context |= {"answer": answer.as_json(), "plan": answer.plan, "curl": curl}
+            context |= {"answer": answer.as_json(), "walk": _walk_of(answer.plan), "curl": curl}
         except ParserAway as error:
             context["away"] = error.message
         except Refusal as error:
@@ -58,6 +58,13 @@ def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     response = render(request, "parser_service/serving/_joint_plan_answer.html", context)
     address = reverse("joint_plan", kwargs={"world": world.name})
     return replace_url(response, f"{address}?{urlencode(texts)}" if texts else address)
+
+
+def _walk_of(plan: JointPlan) -> str:
+    """Return how long the walk is, and how long it would be without a joint plan."""
+    joint, in_turn = (say_length(each, plan.unit) for each in (plan.length, plan.length_before))
+    back = ", with the way back" if plan.ends_at else ""
+    return f"Walk: {joint}{back}; one after the other: {in_turn}."
 
 
 def _asking(world: World) -> dict[str, Any]:

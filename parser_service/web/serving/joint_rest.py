@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.http import HttpResponse, HttpResponseBase
+from django.http import HttpResponseBase
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.language.limits import MAX_ENTITY
-from annotations.language.plans import to_behavior_tree
-from annotations.language.recipes import MOST_COMMANDS, Distances
+from annotations.language.recipes import METRES, MOST_COMMANDS, Distances
 from annotations.models import Scope
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 from parser_service.serving.joint_answers import commands_in, plan_together
+from parser_service.web.robots.tree_query import TreeQuery, tree_answer
 from parser_service.web.serving.parsing_rest import MOST_KEY
 
 MOST_DISTANCES = 10_000
+MOST_OF_UNIT = 20
 
 
 class DistanceSerializer(Fields):
@@ -32,11 +33,12 @@ class DistanceSerializer(Fields):
     distance = serializers.FloatField(min_value=0, max_value=1e9)
 
 
-class JointQuery(Fields):
+class JointQuery(TreeQuery):
     """One to three ``utterances``, or one ``utterance`` that holds them.
 
-    ``run`` asks another parser than the promoted one; ``as`` xml asks for a behaviour tree. Without ``distances``
-    two places of one room are 1 apart, and others 2.
+    ``run`` asks another parser than the promoted one; ``as`` xml asks for a behaviour tree, and ``robust``, ``tries``
+    and ``seconds`` say how it tries each step. ``unit`` is that of ``distances``. Without those the walk counts rooms:
+    a way inside a room is a half.
     """
 
     utterances = serializers.ListField(
@@ -51,15 +53,12 @@ class JointQuery(Fields):
     distances = serializers.ListField(
         child=DistanceSerializer(), max_length=MOST_DISTANCES, default=list
     )
+    unit = LineField(max_length=MOST_OF_UNIT, default=METRES)
 
     def validate(self, sent: dict[str, Any]) -> dict[str, Any]:
         if sent["utterances"] and sent["utterance"]:
             raise serializers.ValidationError("Send utterance or utterances, not both.")
         return sent
-
-    def get_fields(self) -> dict[str, Any]:
-        as_ = serializers.ChoiceField(choices=["json", "xml"], default="json")
-        return {**super().get_fields(), "as": as_}
 
 
 class UnderstoodSerializer(serializers.Serializer[Any]):
@@ -101,11 +100,9 @@ class JointPlanRoute(WorldRoute):
     def post(self, request: ApiRequest, world: str) -> HttpResponseBase:
         sent = self.read(JointQuery)
         utterances = sent["utterances"] or commands_in(self.world, sent["utterance"], sent["run"])
-        distances = Distances.of_rows(
-            (each["one"], each["other"], each["distance"]) for each in sent["distances"]
-        )
+        rows = ((each["one"], each["other"], each["distance"]) for each in sent["distances"])
+        distances = Distances.of_rows(rows, sent["unit"])
         answer = plan_together(self.world, utterances, sent["run"], distances)
         if sent["as"] == "xml":
-            tree = to_behavior_tree(answer.plan.plan)
-            return HttpResponse(tree, content_type="application/xml")
+            return tree_answer(answer.plan.plan, sent)
         return Response(answer.as_json())

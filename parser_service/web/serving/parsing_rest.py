@@ -105,7 +105,7 @@ class ParseQuery(AskedParser, Fields):
 
 class SpanSerializer(serializers.Serializer[Any]):
     """The characters ``start`` to ``end`` of the utterance name an entity: as it is called (``likeness``
-    exact), by an alias, or inflected."""
+    exact), by an alias, or inflected; or name its class, for one of its members."""
 
     start = serializers.IntegerField()
     end = serializers.IntegerField()
@@ -113,7 +113,7 @@ class SpanSerializer(serializers.Serializer[Any]):
     token = serializers.CharField()
     entity_class = serializers.CharField()
     value = serializers.CharField()
-    likeness = serializers.ChoiceField(choices=["exact", "alias", "inflected"])
+    likeness = serializers.ChoiceField(choices=["exact", "alias", "inflected", "member"])
 
 
 class OpenSlotSerializer(serializers.Serializer[Any]):

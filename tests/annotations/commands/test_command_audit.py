@@ -101,7 +101,7 @@ def test_a_run_and_its_promotion(world, transactional_db, settings, tmp_path):
     settings.RUNS_DIR = tmp_path
     split = make_split(world)
     known = split.examples.get(part="train", source="paraphrased", position=1)
-    asked = split.examples.filter(part="validation", source="paraphrased")
+    asked = split.examples.filter(part="validation")
     asked.update(utterance=known.utterance, logical_form=known.logical_form)
     report, _ = run("train", "knn", "--world", "home", "--split", "home", "--sources", "gen,para")
     promoted = promoted_run(world)

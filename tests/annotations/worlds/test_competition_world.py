@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -13,7 +14,7 @@ import pytest
 from annotations.generation.grounded_pairs import GroundedCommands
 from annotations.importing.predicates_file import read_predicates
 from annotations.language.decoding import read_folder
-from annotations.language.forms import canonical_text, read_form
+from annotations.language.forms import Constant, canonical_text, read_form, walk
 from annotations.language.grammar import read_production
 from annotations.language.ontology import (
     COMPETITION_FILES,
@@ -22,7 +23,14 @@ from annotations.language.ontology import (
 )
 from annotations.language.plans import make_plan
 from annotations.language.predicates import Predicate, check_form, gloss, infer_signatures
-from annotations.language.recipes import apply_recipes, default_book, same_plan, usual_places
+from annotations.language.recipes import (
+    apply_recipes,
+    default_book,
+    same_plan,
+    shipped_books,
+    spoken,
+    usual_places,
+)
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     Balance,
@@ -45,6 +53,8 @@ from tests.annotations.language.published import SHARED
 
 FOLDER = SHIPPED_WORLDS["competition"].folder
 COMPETITION = SHARED / "competition-2025"
+# Commands that leave something out, with the heads and the constants of their forms.
+PLAIN = Path(__file__).parent / "plain_commands.txt"
 PLACES = ("location", "room")
 NAMED = ("object", "category", "name", "location", "room")
 # Kind → a command with entities of this world, and the heads of the actions that it asks for.
@@ -140,6 +150,11 @@ def heads(form: str) -> list[str]:
     read = read_form(form)
     actions = read.arguments if read.predicate == "sequence" else (read,)
     return [str(each.predicate) for each in actions]
+
+
+def constants(form: str) -> list[str]:
+    """The texts of a form, in order."""
+    return [str(each.value) for each in walk(read_form(form)) if isinstance(each, Constant)]
 
 
 def grounded(parser: GrammarOracle, utterance: str) -> set[str]:
@@ -275,6 +290,9 @@ def test_nothing_is_referred_to_that_was_not_said(said):
             "follow the person waving at the piano",
             "find the person waving at the piano and follow them",
         ),
+        ("bring Otto the cocoa", "take the cocoa and give it to Otto"),
+        ("put the ladle on the piano", "find the ladle, take it and put it on the piano"),
+        ("throw the pretzel away", "get the pretzel and get rid of it"),
     ],
 )
 def test_other_actions_for_the_same_errand_are_the_same_plan(one, other):
@@ -343,6 +361,49 @@ def test_the_trash_is_the_garbage_pail():
     plan = make_plan(read_form(form), ontology(), predicates())
     assert plan.is_executable
     assert dict(plan.steps[-1].arguments)["destination"].text == "garbage pail"
+
+
+@pytest.mark.parametrize(
+    ("said", "as_written"),
+    [
+        (
+            "Go to the galley, find Bea at the larder and guide her to the piano",
+            "go to the galley and find Bea at the larder and guide them to the piano",
+        ),
+        ("1. Bring me the cocoa.", "bring me the cocoa"),
+        ("(2) follow Otto", "follow Otto"),
+        ("Ｂｒｉｎｇ ｍｅ ｔｈｅ ｃｏｃｏａ．", "bring me the cocoa"),
+        ("１．ﬁnd ｔｈｅ ｃｏｃｏａ", "find the cocoa"),
+        (
+            "Go to the ｌｏｂｂｙ，ﬁnd Otto and follow him",
+            "go to the lobby, find Otto and follow him",
+        ),
+    ],
+)
+def test_commas_pronouns_numbers_of_lists_and_other_letters_are_heard(said, as_written):
+    assert grounded(oracle(), said) == grounded(oracle(), as_written) != set()
+
+
+def test_plain_commands_are_read_whatever_they_leave_out():
+    lines = PLAIN.read_text("utf-8").splitlines()
+    commands = [line.split("|") for line in lines if not line.startswith("#")]
+    assert len(commands) == 60
+    wrong = {}
+    for said, wanted, values in commands:
+        forms = grounded(oracle(), said.strip())
+        found = {(" ".join(heads(form)), ", ".join(constants(form))) for form in forms}
+        if found != {(wanted.strip(), values.strip())}:
+            wrong[said] = found
+            continue
+        (form,) = forms
+        assert check_form(read_form(form), predicates()) == []
+        plan = make_plan(read_form(form), ontology(), predicates())
+        for book in shipped_books().values():
+            task_plan = apply_recipes(plan, book.book, usual_places(ontology()))
+            assert spoken(task_plan).startswith("I will ")
+        # Nobody has said where to, so the plan asks.
+        assert plan.is_executable == (said.strip() != "guide Freya")
+    assert wrong == {}
 
 
 def test_the_kind_of_the_documents_is_added_by_two_rows():

@@ -1,4 +1,4 @@
-"""A team's evening before a competition: a world, its folder, its rooms, a sample, a split, two parsers."""
+"""A team's evening before a competition: a world, its folder, its rooms, a sample, a split, a learned part."""
 
 from __future__ import annotations
 
@@ -237,14 +237,13 @@ def test_an_evening_of_a_team(
     sample(evening)
     freeze(evening)
 
-    train(evening, "knn")
     parse_server.update()
-    answer = parse(evening, "21-parse-knn", "please go to the sofa")
+    answer = parse(evening, "18-parse-at-once", "please go to the sofa")
     assert steps_of(answer) == ["go"]
     expect(answer.locator(".playground-heard .value")).to_have_text("sofa")
 
-    train(evening, "grammar-oracle")
-    promote(evening, "grammar-oracle")
+    train(evening, "knn")
+    promote(evening, "knn")
     parse_server.update()
     answer = parse(evening, "22-parse-capital", "Bring me the hand towel from the laundry table.")
     assert steps_of(answer) == ["bring"]

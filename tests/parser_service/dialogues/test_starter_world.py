@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import jsonschema
 import pytest
+from django.utils import timezone
 
 from annotations.language.plans import plan_schema
 from annotations.models import User
 from annotations.models.splits import Criterion
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
-from parser_service.promotions.promoting import promote
+from parser_service.models import Promotion, PromotionState
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import Shelf
 from tests.conftest import member
@@ -26,7 +27,10 @@ def shelf(db, request):
     parser, protocol = request.param
     split = load_starter_world(lambda sentence: None)[Criterion.COMMAND]
     run = trained_run(split, parser=parser, protocol=protocol, train_sources="gen+para")
-    promote(run, None)
+    # An older version promoted runs of the oracle too.
+    Promotion.objects.create(
+        world=split.world, run=run, state=PromotionState.PROMOTED, decided_at=timezone.now()
+    )
     member(split.world, "anna", "annotator")
     made = Shelf(10_000_000, Metrics())
     made.update()

@@ -117,6 +117,36 @@ WAYS = (
     "If you would be so kind, {0}, then {1}, then {2}.",
     "{0}!\n\n{1}!\n\n{2}!",
     "hmm let me think {0} yes and then {1} yes and then {2} yes",
+    "Esteemed robot, I would request three services of you. Service the first: {0}. Service the second: {1}. Service the third: {2}.",
+    "To commence, {0}. Following this, {1}. At the very last, {2}.",
+    "You shall {0}. Thereafter you shall {1}. In the end you shall {2}.",
+    "The opening act: {0}. The middle act: {1}. The closing act: {2}.",
+    "My primary objective is {0}. My secondary objective is {1}. My tertiary objective is {2}.",
+    "A. {0} B. {1} C. {2}",
+    "Q1: {0} Q2: {1} Q3: {2}",
+    "~ {0} ~ {1} ~ {2}",
+    "Todo\n[ ] {0}\n[ ] {1}\n[ ] {2}",
+    "command 1 {0} command 2 {1} command 3 {2}",
+    "{0}, that is command one. {1}, that is command two. {2}, that is command three.",
+    "pleeease {0} and also pleeease {1} and also pleeease {2} thank you",
+    "can you do stuff for me like {0} and like {1} and like {2}",
+    "first {0} when you've managed it {1} when you've managed that as well {2}",
+    "right so the first thing i'd like is {0} the next thing i'd like is {1} and the last thing i'd like is {2}",
+    "Ok boss wants this: {0}. Boss also wants this: {1}. And this: {2}.",
+    "Good day! {0}. Much obliged. {1}. Much obliged. {2}. Much obliged.",
+    "So here we go, {0}; right after, {1}; and at long last, {2}.",
+    "Once more unto the breach: {0}, then, {1}, then, {2}.",
+    "We have a busy day ahead of us. {0}. {1}. {2}. Hurry up!",
+    "Wish #1 is {0}. Wish #2 is {1}. Wish #3 is {2}.",
+    "In this order: {0}, {1}, {2}.",
+    "For one thing, {0}. For another, {1}. Besides that, {2}.",
+    "Let's do three errands: {0}. Let's move on: {1}. Let's finish: {2}.",
+    "When all is done, I expect you to have done three things. {0}. {1}. {2}.",
+    "Would you {0}? Afterwards, would you {1}? After all that, would you {2}?",
+    "ready steady go {0} ready steady go {1} ready steady go {2}",
+    "{0}. That was easy. {1}. That was harder. {2}. That was it.",
+    "I'd like the following done: {0}; following that, {1}; following that, {2}.",
+    "Number 1 - {0}, number 2 - {1}, number 3 - {2}",
 )
 
 # What is said → the commands in it that may be acted on, in order.
@@ -171,7 +201,7 @@ TALK = {
     ],
     "Command one: bring me the cocoa": ["bring me the cocoa"],
     "My first and only task for you is: bring me the cocoa.": ["bring me the cocoa"],
-    "1. bring me the cocoa": ["bring me the cocoa"],
+    "1. bring me the cocoa": ["1. bring me the cocoa"],
     "yesterday my sister said that you bring me the cocoa": [],
     "I have three things for you.": [],
     "the weather is lovely today, is it not?": [],
@@ -195,7 +225,7 @@ TALK = {
         "greet Maria in the lobby",
     ],
     "she told me to bring me the cocoa and greet Maria in the lobby": [],
-    "not bring me the cocoa, greet Maria in the lobby": ["greet Maria in the lobby"],
+    "not bring me the cocoa, greet Maria in the lobby": [],
     "When Maria comes, greet Maria in the lobby. Bring me the cocoa.": ["bring me the cocoa"],
     "Water the flowers. Bring me the cocoa. Greet Maria in the lobby.": [
         "bring me the cocoa",
@@ -221,4 +251,42 @@ TALK = {
     "bring me the cocoa as soon as you are done. Greet Maria in the lobby.": [
         "greet Maria in the lobby"
     ],
+    "it is not necessary to bring me the cocoa. Greet Maria in the lobby.": [
+        "greet Maria in the lobby"
+    ],
+    "stop bringing things. Greet Maria in the lobby. Bring me the cocoa.": [
+        "greet Maria in the lobby",
+        "bring me the cocoa",
+    ],
+    "my brother always says: bring me the cocoa. And then he says: greet Maria in the lobby.": [],
+    "greet Maria in the lobby, on second thought bring me the cocoa": [],
+    # The whole is heard as its end, which repairs its beginning.
+    "bring me the cocoa. Wait, no. Greet Maria in the lobby.": [
+        "bring me the cocoa. Wait, no. Greet Maria in the lobby."
+    ],
+    "why don't you bring me the cocoa and greet Maria in the lobby": [
+        "why don't you bring me the cocoa",
+        "greet Maria in the lobby",
+    ],
+    "teach me how to bring me the cocoa, please. Also greet Maria in the lobby": [
+        "greet Maria in the lobby"
+    ],
+    "bring me the cocoa every morning; greet Maria in the lobby": ["greet Maria in the lobby"],
+    "should Maria be absent, bring me the cocoa. Greet Maria in the lobby.": [
+        "greet Maria in the lobby"
+    ],
+    "after Maria has gone, bring me the cocoa. Greet Maria in the lobby.": [
+        "greet Maria in the lobby"
+    ],
+    "bring me the cocoa before Maria comes. Greet Maria in the lobby.": [
+        "greet Maria in the lobby"
+    ],
+    "the robot must bring me the cocoa or else it will greet Maria in the lobby": [],
+    "bring me the cocoa, not the quince. Greet Maria in the lobby.": [
+        "bring me the cocoa",
+        "greet Maria in the lobby",
+    ],
+    "who said you should greet Maria in the lobby and bring me the cocoa": [],
+    "bring me the cocoa in the blue mug and greet Maria in the lobby": ["greet Maria in the lobby"],
+    "bring me the cocoa with care and greet Maria in the lobby gently": [],
 }

@@ -1,12 +1,23 @@
 from __future__ import annotations
 
+import re
+
 import pytest
+from hypothesis import given
 
 from annotations.language.forms import read_form
 from annotations.language.plans import make_plan
 from annotations.language.predicates import Predicate, PredicateKind, read_signatures
-from annotations.language.recipes import apply_recipes, default_book, join, read_book, spoken
+from annotations.language.recipes import (
+    EffectKind,
+    apply_recipes,
+    default_book,
+    join,
+    read_book,
+    spoken,
+)
 from annotations.language.recipes.task_plan import TaskPlan
+from tests.annotations.language.random_commands import commands
 from tests.annotations.language.recipes.task_plans import task_plan
 from tests.annotations.language.sample_ontology import HOME
 
@@ -73,6 +84,13 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
 )
 def test_a_plan_is_one_sentence(form, sentence):
     assert spoken(task_plan(form)) == f"I will {sentence}"
+
+
+@given(commands(most=3))
+def test_each_thing_that_is_taken_is_said_to_be(form):
+    plan = task_plan(form)
+    taking = [each for each in plan.steps if each.primitive.effect(EffectKind.TAKES)]
+    assert len(re.findall(r"\btake (?!you)", spoken(plan))) == len(taking)
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ from annotations.language.plans import (
     to_behavior_tree,
 )
 from annotations.language.recipes import (
+    AFTER_COMMANDS,
     EffectKind,
     RecipeBook,
     RecipeTrouble,
@@ -377,7 +378,8 @@ def test_any_book_makes_task_plans(book, texts):
 def test_a_book_has_a_recipe_for_each_action_whose_arguments_have_names():
     for shipped in shipped_books().values():
         actions = {each.pattern.action for each in shipped.book.recipes}
-        assert actions == {*ARGUMENT_NAMES, ASK}
+        assert actions == {*ARGUMENT_NAMES, ASK, AFTER_COMMANDS}
+        assert not shipped.book.problems(actions - {AFTER_COMMANDS})
         assert not shipped.book.problems()
 
 

@@ -45,6 +45,12 @@ def test_the_fewest_commands_that_cover_most_words_are_taken():
     assert cut_out(f"{TAKE}. {GO}", TAKE, GO, *parts) == [TAKE, GO]
 
 
+def test_a_sentence_may_end_inside_a_command_where_a_part_of_it_is_none():
+    whole = "fetch the cup. Then bring it to me"
+    islands = Islands(islands_of(said := f"{GO}. {whole}.", GO, whole).spans, frozenset({(28, 31)}))
+    assert [each.text for each in cut(said, islands)] == [GO, whole]
+
+
 def test_a_sentence_that_ends_inside_a_name_ends_nowhere():
     meet = "greet Dr. Ann"
     said = f"{meet}. {GO}."

@@ -11,7 +11,7 @@ from random import Random
 from annotations.importing.predicates_file import read_predicates
 from annotations.language.forms import Constant, Form, children, read_form, with_part
 from annotations.language.grounding import Anonymizer, deanonymize, ground, with_values
-from annotations.language.grounding.role_evidence import _wildcards
+from annotations.language.grounding.role_evidence import wildcards_of
 from annotations.language.ontology import Ontology
 from annotations.language.predicates import Predicate
 from annotations.language.requests import Fit, WordUse, fit
@@ -31,6 +31,7 @@ class ShippedLanguage:
     categories: tuple[TaskCategory, ...]
     predicates: dict[str, Predicate]
     use: WordUse
+    learned: frozenset[str]
 
     def derivations(self, most, random):
         for category in self.categories:
@@ -43,12 +44,15 @@ class ShippedLanguage:
         return fit(form, slots, heard, self.use, self.ontology)
 
     def grounded(self, most: int, seed: int) -> Iterator[tuple[str, Form, tuple[str, ...]]]:
-        """Yield commands with drawn entities, their forms with class tokens, and the entities of these, in order."""
+        """Yield commands that nothing was learned from, with drawn entities, their forms with class tokens, and the
+        entities of these, in order."""
         random = Random(seed)
         for each in self.derivations(most, random):
+            if each.anonymized_text in self.learned:
+                continue
             grounded = ground(each.symbols, each.form, self.ontology, random)
             form, values = grounded.form, []
-            for path, wildcard in _wildcards(each.form):
+            for path, wildcard in wildcards_of(each.form):
                 if wildcard.entity_class:
                     values.append(str(_part(grounded.form, path).value))
                     form = with_part(form, path, Constant(f"<{wildcard.entity_class}>"))
@@ -70,10 +74,10 @@ def shipped(name: str) -> ShippedLanguage:
     predicates = read_predicates(
         (folder / "predicates.json").read_bytes(), classes=ontology.classes
     )
-    pairs = [
-        (each.symbols, each.form)
-        for category in categories
-        for each in spread_derivations(category, 40, Random(0))
+    drawn = [
+        each for category in categories for each in spread_derivations(category, 25, Random(0))
     ]
+    pairs = [(each.symbols, each.form) for each in drawn]
     use = WordUse.of(pairs, predicates, ontology.classes)
-    return ShippedLanguage(ontology, categories, predicates, use)
+    learned = frozenset(each.anonymized_text for each in drawn)
+    return ShippedLanguage(ontology, categories, predicates, use, learned)

@@ -28,6 +28,9 @@ from annotations.language.ontology import Entity, Ontology
 from annotations.language.predicates import infer_signatures
 from annotations.language.symbols import places_in_pattern
 from annotations.language.templates import (
+    Balance,
+    Language,
+    SampleRequest,
     TaskCategory,
     TemplateChart,
     TemplateExpander,
@@ -69,6 +72,72 @@ ALL = category("$goto = $goto", BOTH, GOTO, FIND, THEN, PLACE, BRING)
 
 def forms(*categories):
     return {each.command: each.form_text for each in generate(categories).expansions}
+
+
+OPTIONAL = """
+$Main = find $what $where | follow $what $whereto
+$what = the {kobject} | it
+$where = in the {room} | {void}
+$whereto = to the {room} | {void}
+"""
+NOTHING = category(
+    "find $what $where = (find (λ$1:e (is_a $1 $what) (at $1 $where)))",
+    "follow $what $whereto = (follow $what $whereto)",
+    "$where -> in the {room 1} = (room {room 1})",
+    "$where -> {void} = UNKNOWN",
+    "$whereto -> $place = $place",
+    "$place -> to the {room 1} = (room {room 1})",
+    "$place -> {void} = UNKNOWN",
+    grammar=Grammar(
+        read_productions(f"{OPTIONAL}$place = to the {{room}} | {{void}}\n").productions
+    ),
+)
+
+
+def test_a_line_that_says_nothing_takes_its_argument_or_its_description_away():
+    """Alike in generation, in the chart and in a sample; also through a line that takes up such a line."""
+    wanted = {
+        "find the <object> in the <room>": '(find (λ$1:e (is_a $1 "the <object>") (at $1 (room "<room>"))))',
+        "find the <object>": '(find (λ$1:e (is_a $1 "the <object>")))',
+        "find it": '(find (λ$1:e (is_a $1 "it")))',
+        "follow it to the <room>": '(follow "it" (room "<room>"))',
+        "follow it": '(follow "it")',
+    }
+    found = forms(NOTHING)
+    chart = TemplateChart([NOTHING])
+    drawn = Language([NOTHING]).sample(SampleRequest(100, balance=Balance.FORMS)).generated
+    sampled = {each.command: each.form_text for each in drawn.expansions}
+    for command, form in wanted.items():
+        text = canonical_text(read_form(form))
+        assert found[command] == sampled[command] == text
+        assert {each.form_text for each in chart.parse(command)} == {text}
+    assert set(found) == set(sampled) and len(found) == 8
+    entities = Ontology((Entity("object", "cola"), Entity("room", "hall")))
+    expander = TemplateExpander(NOTHING.grammar, NOTHING.lines)
+    made = {
+        grounded.text: canonical_text(grounded.form)
+        for template in NOTHING.templates[:2]
+        for each in expander.derivations(template)
+        for grounded in (ground(each.symbols, each.form, entities, Random(1)),)
+    }
+    assert made["find it"] == canonical_text(read_form('(find (λ$1:e (is_a $1 "it")))'))
+    assert made["follow it"] == canonical_text(read_form('(follow "it")'))
+
+
+def test_a_description_of_which_nothing_is_left_is_unknown():
+    lines = [each for each in NOTHING.templates if each.nonterminal == "where"]
+    template = read_template("look $where = (look (λ$1:e (at $1 $where)))")
+    alone = TaskCategory("1", NOTHING.grammar, (template, *lines))
+    assert forms(alone)["look"] == "( look UNKNOWN )"
+    assert {each.form_text for each in TemplateChart([alone]).parse("look")} == {"( look UNKNOWN )"}
+
+
+def test_no_words_that_are_no_line_stay_unknown():
+    plain = category(
+        "go $where = (go $where)",
+        grammar=Grammar(read_productions("$Main = go $where\n$where = away | {void}").productions),
+    )
+    assert forms(plain) == {"go": "( go UNKNOWN )", "go away": '( go " away " )'}
 
 
 def test_a_line_keeps_its_nonterminal_and_prints_as_it_reads():

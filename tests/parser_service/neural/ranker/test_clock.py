@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from parser_service.neural.ranker.fitting import Fitting
 from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.neural.ranker.steps import cut, plan
 from parser_service.neural.training import LEAST_TIMED, Clock
@@ -67,6 +68,22 @@ def test_a_training_that_would_last_too_long_takes_fewer_steps_and_says_so(
     assert observe.fractions == sorted(observe.fractions)
     assert observe.fractions[-1] == 1
     assert all(parser.predict(utterances(pairs)))
+
+
+def test_preparing_counts_as_progress(config, pairs, tmp_path, monkeypatch):
+    """Time left is what progress leaves: after long preparing, few steps are most of neither."""
+    prepare = Fitting._prepare
+
+    def slowly(fitting, *arguments):
+        prepare(fitting, *arguments)
+        fitting._clock.before = 3600.0
+
+    monkeypatch.setattr(Fitting, "_prepare", slowly)
+    observe = Recorder(tmp_path)
+    FormRanker(config).fit(pairs[:20], pairs[20:], observe)
+    assert observe.fractions[LEAST_TIMED] > 0.9
+    assert observe.fractions == sorted(observe.fractions)
+    assert observe.fractions[-1] == 1
 
 
 def test_a_training_that_has_time_takes_all_steps(config, pairs, tmp_path):

@@ -75,7 +75,9 @@ def test_a_table_of_distances_is_used(browse):
     far = {"one": "kitchen", "other": "operator", "distance": 40.5}
     answer = browse.post(API, {"utterances": TWO, "distances": [far]}, JSON).json()
     assert answer["joint_plan"]["length"] == 81  # there and back
-    assert answer["joint_plan"]["length_before"] == 81
+    assert (answer["joint_plan"]["length_before"], answer["joint_plan"]["unit"]) == (81, "m")
+    in_feet = browse.post(API, {"utterances": TWO, "distances": [far], "unit": "ft"}, JSON).json()
+    assert in_feet["joint_plan"]["unit"] == "ft"
 
 
 @pytest.mark.parametrize(
@@ -99,6 +101,12 @@ def test_what_contradicts_itself_is_refused(browse, sent):
 def test_a_joint_plan_is_a_behaviour_tree_too(browse):
     tree = browse.post(API, {"utterances": TWO, "as": "xml"}, JSON)
     assert b'ID="go_to"' in tree.content and b'ID="find_object"' in tree.content
+    assert b'thing="bowl"' in tree.content and b"Fallback" not in tree.content
+    sent = {"utterances": TWO, "as": "xml", "robust": True, "tries": 4, "seconds": 1.5}
+    robust = browse.post(API, sent, JSON).content
+    assert robust.count(b'num_attempts="4"') == robust.count(b'msec="1500"') > 0
+    assert b'ID="step_failed"' in robust
+    assert browse.post(API, {**sent, "tries": 0}, JSON).status_code == 400
 
 
 def test_what_is_not_understood_is_said(browse, parse_server, world):
@@ -106,7 +114,13 @@ def test_what_is_not_understood_is_said(browse, parse_server, world):
     parse_server.update()
     answer = browse.post(API, {"utterances": [TWO[0], "xyzzy"]}, JSON).json()
     assert [each["is_unknown"] for each in answer["commands"]] == [False, True]
-    assert not answer["joint_plan"]["is_executable"]
+    note = answer["joint_plan"]["notes"][0]
+    assert (note["code"], note["commands"]) == ("not_understood", [2]) and "xyzzy" in note[
+        "message"
+    ]
+    assert answer["spoken"].startswith(note["message"])
+    served = {number for step in answer["joint_plan"]["steps"] for number in step["commands"]}
+    assert served == {1}
     assert browse.post(API, {}, JSON).status_code == 400
 
 
@@ -114,6 +128,8 @@ def test_the_page_shows_which_command_a_step_serves(browse):
     page = browse.post(f"{PAGE}ask/", {"command1": TWO[0], "command3": TWO[1]})
     text = page.content.decode()
     assert 'data-command="1"' in text and 'data-command="2"' in text
+    assert all(f'data-note="{code}"' in text for code in ("way_back", "walk"))
+    assert " rooms, with the way back; " in text
     assert page["HX-Replace-Url"].startswith(f"{PAGE}?command1=")
     assert browse.get(f"{PAGE}?command1=go").context["has_text"]
     assert browse.post(f"{PAGE}ask/", {"command1": "go. go. go. go"}).context["refused"]

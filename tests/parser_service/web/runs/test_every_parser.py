@@ -127,7 +127,8 @@ def asked_small(client, parser: str) -> dict[str, str]:
     small = {f"config-{name}": str(value) for name, value in SMALL.items()}
     filled_in = offered(client, parser)
     changes = {name: value for name, value in small.items() if name in filled_in}
-    return {**filled_in, **changes, "train_sources": "para", "seed": "7"}
+    strictest = PARSERS[parser].protocols[0]  # whichever is recommended
+    return {**filled_in, **changes, "train_sources": "para", "protocol": strictest, "seed": "7"}
 
 
 def post(client, parser: str, values: dict[str, str]):
