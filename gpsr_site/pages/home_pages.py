@@ -61,7 +61,8 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
         "measured": newest_answerer_table(world) if counts.splits else None,
         "can_be_measured": counts.splits and (counts.templates or counts.evaluated),
         "best": best,
-        "answers": bool(answering_parts(world)),
+        # A template that is ready answers, whichever parts are chosen.
+        "answers": counts.templates > counts.drafts + counts.disputed or answering_parts(world),
         "recent_runs": world.runs.for_table()[:6],
     }
     return render(request, "gpsr_site/world.html", context)
