@@ -73,12 +73,14 @@ class JointAnswer:
 
 
 def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
-    """Return the commands of one utterance, as what answers in the world cuts it.
+    """Return the commands of one utterance, as what answers in the world cuts it; none of a blank one.
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
         ParserAway, ParserRefused: as ``ParserClient.parse``.
     """
+    if not utterance.strip():
+        return ()
     several = client().parse(world.name, utterance, beam=1, run=run)["several"]
     commands = tuple(each["utterance"] for each in several) or (utterance,)
     _require_few(commands)

@@ -21,14 +21,14 @@ from parser_service.serving.answering import answering_parts, choose_answering, 
 from parser_service.serving.calibrating import calibrated
 
 
-class PartSerializer(serializers.Serializer[Any]):
+class AnsweringPartSerializer(serializers.Serializer[Any]):
     """A part that is asked: its parser, and the run that it is of; the grammar oracle needs none."""
 
     parser = serializers.CharField()
     run = serializers.IntegerField(allow_null=True)
 
 
-class PointSerializer(serializers.Serializer[Any]):
+class OperatingPointSerializer(serializers.Serializer[Any]):
     """From which probability on an answer is acted on, and from which on it is confirmed."""
 
     act = serializers.FloatField()
@@ -43,9 +43,9 @@ class AnswererSerializer(serializers.Serializer[Any]):
     order = serializers.ChoiceField(choices=AnsweringOrder.choices)
     allowed_wrong = serializers.FloatField()
     version = serializers.IntegerField()
-    parts = PartSerializer(many=True)
+    parts = AnsweringPartSerializer(many=True)
     calibrated_on = serializers.IntegerField()
-    operating_point = PointSerializer()
+    operating_point = OperatingPointSerializer()
 
 
 class AnswererChange(Fields):
