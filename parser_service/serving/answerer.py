@@ -514,7 +514,7 @@ class Answerer:
                 return str(first["spoken"])
             case Decision.CONFIRM:
                 return shall_i(first["english"])
-            case Decision.ASK:
+            case Decision.ASK if first:
                 asked = [slot["question"] for slot in first["open_slots"]]
                 asked += [each["message"] for each in first["plan"]["problems"]]
                 return next(iter(asked), shall_i(first["english"]))
