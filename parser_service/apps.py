@@ -31,6 +31,7 @@ class ParserServiceConfig(AppConfig):
         )
         register_parsers(lambda world: TrainingRun.objects.succeeded().filter(world=world).exists())
         register_part("parser_service.robots.archived.ACTION_NAMES")
+        register_part("parser_service.serving.archived.ANSWERING")
         register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
         keep_encoders_in(
             settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES

@@ -9,6 +9,7 @@ from parser_service.web.analyses import analysis_rest
 from parser_service.web.dialogues.dialogue_rest import DialogueViewSet
 from parser_service.web.labelling import answer_rest, audit_rest
 from parser_service.web.paraphrasing import against_rest, model_rest
+from parser_service.web.promotions.answerer_rest import OneAnswerer
 from parser_service.web.promotions.promotion_rest import PromotionViewSet
 from parser_service.web.results import result_rest
 from parser_service.web.results.slice_rest import SliceViewSet
@@ -60,6 +61,7 @@ of_world = [
     path(f"{ANSWER}/doubt/", review_rest.DoubtLabel.as_view(), name="answer-doubt"),
     path("results/measure/", result_rest.Measurement.as_view(), name="results-measure"),
     path("results/", result_rest.Results.as_view(), name="results"),
+    path("answerer/", OneAnswerer.as_view(), name="answerer"),
     path("plan/", robot_rest.PlanRoute.as_view(), name="plan"),
     path("joint-plan/", joint_rest.JointPlanRoute.as_view(), name="joint-plan"),
     path("task-plan/", robot_rest.TaskPlanRoute.as_view(), name="task-plan"),

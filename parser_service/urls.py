@@ -79,6 +79,7 @@ urlpatterns = [
     path("parse/wrong/", playground_pages.playground_wrong, name="playground_wrong"),
     path("parse/state/", promotion_pages.parser_state, name="parser_state"),
     path("promotion/", promotion_pages.promotions, name="promotions"),
+    path("promotion/answering/", promotion_pages.answering, name="answering"),
     path("promotion/promote/", promotion_pages.promotion_promote, name="promotion_promote"),
     path("promotion/roll-back/", promotion_pages.promotion_roll_back, name="promotion_roll_back"),
     path(

@@ -121,6 +121,7 @@ WHAT = {
     "promotion_promote": "promote a run",
     "promotion_roll_back": "roll back to the run before",
     "promotion_decline": "decline a proposed run",
+    "answering": "choose what answers",
     "playground_wrong": "report a wrong answer",
     "dialogues": "begin a dialogue",
     "dialogue": "answer in a dialogue",

@@ -18,6 +18,7 @@ from gpsr_site.overview.flow import stages
 from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import workers_now
 from parser_service.results.answerer_rows import newest_answerer_table
+from parser_service.serving.answering import answering_parts
 
 MOST_SHOWN = 3  # things that wait, for each world of the list
 MOST_JOBS = 5  # in the work list; the page of jobs has them all
@@ -60,6 +61,8 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
         "measured": newest_answerer_table(world) if counts.splits else None,
         "can_be_measured": counts.splits and (counts.templates or counts.evaluated),
         "best": best,
+        # A template that is ready answers, whichever parts are chosen.
+        "answers": counts.templates > counts.drafts + counts.disputed or answering_parts(world),
         "recent_runs": world.runs.for_table()[:6],
     }
     return render(request, "gpsr_site/world.html", context)

@@ -60,7 +60,8 @@ class Evidence:
 
     Of the oracle: ``is_exact``: it understood the words that were said, whatever noise is around them; ``heard_cost``:
     how many changes were made to hear it so; ``readings``: how many are equally good. Of the learned parser: the
-    ``learned_log_probability`` of its answer, None where its scores are none, and by how many nats it is above the second
+    ``learned_log_probability`` of its answer, None where its scores are none, and by how many nats it is above the
+    second
     (``margin``). ``agrees``: the other part gives the same form; None where it was not asked or is silent.
 
     Of either: how many slots nothing in the utterance names (``not_said``), how many named things the form has not

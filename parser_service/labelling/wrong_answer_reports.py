@@ -15,7 +15,7 @@ from annotations.models.corpus import UtteranceStatus
 from annotations.queueing.enqueuing import WantedItem, enqueue
 from parser_service.labelling.label_candidates import PERSON
 from parser_service.models import TrainingRun
-from parser_service.parsers.registry import title_of
+from parser_service.parsers.registry import title_of, untrained
 
 FIRST = 0  # before what parsers propose
 NO_RUN = 0
@@ -61,6 +61,8 @@ def report_wrong(
     return f"{where}." if not form or is_unknown else f"{where}, with your form offered first."
 
 
-def say_parser(run: TrainingRun | None) -> str:
-    """Return what people read in the queue of the parser that answered."""
-    return f"{title_of(run.parser)} (run {run.pk})" if run else "a parser"
+def say_parser(run: TrainingRun | None, parser: str = "") -> str:
+    """Return what people read in the queue of what answered: a run, or ``parser`` where it needs none."""
+    if run is None:
+        return title_of(parser) if parser in untrained() else "a parser"
+    return f"{title_of(run.parser)} (run {run.pk})"

@@ -18,17 +18,17 @@ from typing import TYPE_CHECKING, Any, cast
 from annotations.language.dialogue import shall_i
 from annotations.language.errors import Refusal
 from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
-from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader
+from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader, Slot
 from annotations.language.recipes import MOST_COMMANDS, join
 from annotations.language.requests import (
     Fit,
     Objection,
+    StoppingWords,
     best_alternative,
     best_fitting,
     exchange,
     fit,
     objections,
-    stopped_by,
     with_entities,
 )
 from parser_service.analysis.sureness import (
@@ -156,6 +156,7 @@ class Answerer:
     world: str
     writer: AnswerWriter
     reader: HearingReader
+    stopping: StoppingWords
     oracle: LoadedParser | None = None
     learned: LoadedParser | None = None
     calibrated: Calibrated = field(default_factory=Calibrated)
@@ -311,13 +312,13 @@ class Answerer:
             reasons = objections(heard)
         if given.part is self.learned:
             readings, fits = self._fit(readings, heard)
-        about = replace(self._about(given, readings, fits), objections=bool(reasons))
+        about = replace(self._about(given, heard, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
             probability = self.calibrated.calibration.probability(about.evidence)
         decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
         if decision is Decision.REFUSE:
-            reasons = (*reasons, *self._stopped_by(heard))
+            reasons = (*reasons, *self.stopping.in_(heard))
         reasons = (*reasons, *_misfits(fits))
         return Answer(given, (), heard, readings, about, probability, decision, reasons)
 
@@ -354,11 +355,12 @@ class Answerer:
         slots = reading.slots or ()
         return fit(_form(reading), slots, heard, language.use, language.ontology)
 
-    def _stopped_by(self, heard: Anonymized) -> tuple[Objection, ...]:
-        language = self.writer.language
-        if not language.use.vocabulary:  # without a grammar nobody can tell which words are known
-            return ()
-        return stopped_by(heard, language.ontology, language.use.vocabulary)
+    def _unknown_words(self, heard: Anonymized, slots: Sequence[Slot]) -> int:
+        """Return how many words nobody knows, besides those that may name what a slot asks for."""
+        asked = {word for slot in slots for phrase in slot.phrases for word in phrase.split()}
+        found = self.stopping.in_(heard)
+        texts = (heard.original[each.start : each.end].split() for each in found)
+        return sum(not asked.issuperset(words) for words in texts)
 
     def _judge_several(self, given: PartAnswer) -> Answer:
         """Return the answer to several commands: as sure as all of them together, and as the least sure one decides.
@@ -448,7 +450,7 @@ class Answerer:
         return replace(by_oracle, candidates=chosen, agrees=bool(same))
 
     def _about(
-        self, given: PartAnswer, readings: Sequence[Reading[str]], fits: Fit
+        self, given: PartAnswer, heard: Anonymized, readings: Sequence[Reading[str]], fits: Fit
     ) -> AnsweredForm:
         """Return what is known of the first reading, for the calibration and the decision."""
         if not readings or readings[0].slots is None or readings[0].candidate.form == UNKNOWN:
@@ -469,6 +471,7 @@ class Answerer:
             left_out=len(fits.left_out),
             exchanged=bool(fits.exchanged),
             executable=best.executable_plans > 0,
+            unknown_words=0 if is_oracle else self._unknown_words(heard, best.slots or ()),
         )
         is_open = any(slot.value is None for slot in best.slots or ())
         # Two names are equally near: "Hailey or Haley?"
@@ -512,7 +515,7 @@ class Answerer:
                 return str(first["spoken"])
             case Decision.CONFIRM:
                 return shall_i(first["english"])
-            case Decision.ASK:
+            case Decision.ASK if first:
                 asked = [slot["question"] for slot in first["open_slots"]]
                 asked += [each["message"] for each in first["plan"]["problems"]]
                 return next(iter(asked), shall_i(first["english"]))

@@ -27,13 +27,16 @@ from parser_service.serving.preparing import WorldLanguage, require_utterance
 
 @dataclass(frozen=True, slots=True)
 class UnderstoodCommand:
-    """One of the commands: its form with entities, and the task plan of it alone."""
+    """One of the commands: its form with entities, the task plan of it alone, and how sure the answer is."""
 
     utterance: str
     is_unknown: bool
     grounded: str
     english: str
     task_plan: TaskPlan
+    decision: str
+    sureness: str
+    probability: float | None
 
     def as_json(self) -> dict[str, Any]:
         return {
@@ -43,6 +46,9 @@ class UnderstoodCommand:
             "english": self.english,
             "task_plan": self.task_plan.as_json(),
             "spoken": spoken(self.task_plan),
+            "decision": self.decision,
+            "sureness": self.sureness,
+            "probability": self.probability,
         }
 
 
@@ -67,7 +73,7 @@ class JointAnswer:
 
 
 def commands_in(world: World, utterance: str, run: int | None = None) -> tuple[str, ...]:
-    """Return the commands of one utterance, as what answers in the world cuts it.
+    """Return the commands of one utterance, as what answers in the world cuts it; none of a blank one.
 
     Raises:
         TooManyCommands: there are more than ``MOST_COMMANDS``.
@@ -137,6 +143,9 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
         best["grounded"] if best else "",
         best["english"] if best else "",
         task_plan_of(form, doubts, language, slots=slots),
+        answer["decision"],
+        answer["sureness"],
+        answer["probability"],
     )
 
 

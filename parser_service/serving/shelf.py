@@ -14,6 +14,7 @@ from django.db.models import Count, Max, Sum
 
 from annotations.language.errors import LanguageError, Refusal
 from annotations.language.grounding import HearingReader
+from annotations.language.requests import StoppingWords
 from annotations.models import (
     Editable,
     Entity,
@@ -210,7 +211,7 @@ class Shelf:
         if parser:
             writer = self._writer(_world(world, wanted), wanted, None)
             reader = _reader(writer, None)
-            return self._alone(Answerer(world, writer, reader, wanted=wanted))
+            return self._alone(Answerer(world, writer, reader, _stopping(writer), wanted=wanted))
         return self._load(world, replace(wanted, order=order) if order else wanted, None)
 
     def _alone(self, answerer: Answerer) -> Answerer:
@@ -363,7 +364,9 @@ class Shelf:
         run = learned.run if learned else None
         sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong)
         reader = _reader(writer, oracle)
-        return Answerer(name, writer, reader, oracle, learned, sureness, wanted=wanted)
+        return Answerer(
+            name, writer, reader, _stopping(writer), oracle, learned, sureness, wanted=wanted
+        )
 
     def _load_run(
         self, name: str, wanted: WantedAnswerer, run: int, held: Answerer | None
@@ -374,7 +377,9 @@ class Shelf:
         writer = self._writer(world, wanted, held)
         sureness = calibrated(world, run, AnsweringOrder.LEARNED, wanted.allowed_wrong)
         reader = _reader(writer, None)
-        return Answerer(name, writer, reader, None, learned, sureness, wanted=wanted)
+        return Answerer(
+            name, writer, reader, _stopping(writer), None, learned, sureness, wanted=wanted
+        )
 
     def _writer(self, world: World, wanted: WantedAnswerer, held: Answerer | None) -> AnswerWriter:
         if held is not None and _words(held.wanted) == _words(wanted):
@@ -432,6 +437,11 @@ class Shelf:
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,
             parser=parser,
         )
+
+
+def _stopping(writer: AnswerWriter) -> StoppingWords:
+    """Return what finds the words that nobody knows."""
+    return StoppingWords(writer.language.ontology, writer.language.use.vocabulary)
 
 
 def _reader(writer: AnswerWriter, oracle: LoadedParser | None) -> HearingReader:

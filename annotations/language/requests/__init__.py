@@ -36,7 +36,7 @@ from annotations.language.requests.stopping import (
     UNKNOWN_NAME,
     UNKNOWN_WORD,
     NearCommands,
-    stopped_by,
+    StoppingWords,
     with_entities,
 )
 from annotations.language.requests.word_use import WordUse
@@ -56,6 +56,7 @@ __all__ = [
     "OtherRequest",
     "Piece",
     "Qualified",
+    "StoppingWords",
     "WordUse",
     "best_alternative",
     "best_fitting",
@@ -68,6 +69,5 @@ __all__ = [
     "other_requests",
     "says_number",
     "sentences",
-    "stopped_by",
     "with_entities",
 ]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import islice
 
@@ -122,13 +122,13 @@ def objections(heard: Anonymized) -> tuple[Objection, ...]:
         text += heard.original[end : span.start] + "_" * (span.end - span.start)
         end = span.end
     text = (text + heard.original[end:]).replace("’", "'")
-    found = [*_qualified(text), *_numbers(heard)]
+    found = [*_qualified(text, heard.original), *_numbers(heard)]
     return tuple(sorted(found, key=lambda each: each.start))
 
 
 def holds_in(utterance: str) -> Iterator[Objection]:
     """Yield what forbids, sets a condition or takes back, kind by kind. Takes linear time."""
-    return _qualified(utterance.replace("’", "'"))
+    return _qualified(utterance.replace("’", "'"), utterance)
 
 
 def is_qualified(utterance: str) -> bool:
@@ -144,24 +144,29 @@ def says_number(heard: Anonymized) -> bool:
     return any(True for _ in _numbers(heard))
 
 
-def _qualified(text: str) -> Iterator[Objection]:
+def _qualified(text: str, said: str) -> Iterator[Objection]:
+    """Yield what ``text`` qualifies; ``said`` is the same with the names of entities in it."""
+
+    def object_to(code: Qualified, start: int, end: int, message: str) -> Objection:
+        return Objection(code, message.format(said[start:end].strip()), start, end)
+
     for harmless in (_DONE, _WISH):
         text = harmless.sub(_blank, text)
     ifs = [each for each in _IF.finditer(text) if not (each["wish"] or each["polite"])]
     text = _EXCUSE.sub(_blank, text)
     for match in _TAKING_BACK.finditer(text):
-        yield _objection(Qualified.TAKEN_BACK, match, "“{}” takes back what was said.")
+        yield object_to(Qualified.TAKEN_BACK, *match.span(), "“{}” takes back what was said.")
     text = _TAKING_BACK.sub(_blank, text)
     for clause in _CLAUSE.finditer(text):
         negation = _order_not_to(clause[0])
         if negation is not None:
-            begin = clause.start()
-            message = f"“{clause[0].strip()}” forbids it."
-            yield Objection(Qualified.FORBIDDEN, message, begin + negation.start(), clause.end())
+            whole = object_to(Qualified.FORBIDDEN, *clause.span(), "“{}” forbids it.")
+            yield replace(whole, start=clause.start() + negation.start())
     for match in _FORBIDDING.finditer(text):
-        yield _objection(Qualified.FORBIDDEN, match, "“{}” forbids it.")
+        yield object_to(Qualified.FORBIDDEN, *match.span(), "“{}” forbids it.")
     for match in (*_CONDITION.finditer(text), *ifs):
-        yield _objection(Qualified.CONDITION, match, "“{}” sets a condition that I cannot check.")
+        message = "“{}” sets a condition that I cannot check."
+        yield object_to(Qualified.CONDITION, *match.span(), message)
 
 
 def _blank(match: re.Match[str]) -> str:
@@ -186,10 +191,6 @@ def _order_not_to(clause: str) -> re.Match[str] | None:
         ):
             return negation
     return None
-
-
-def _objection(code: Qualified, match: re.Match[str], message: str) -> Objection:
-    return Objection(code, message.format(match[0].strip()), match.start(), match.end())
 
 
 def _numbers(heard: Anonymized) -> Iterator[Objection]:

@@ -28,27 +28,38 @@ _ENDINGS = re.compile(r"(?:'s|ies|es|s|ing|ed|d|er|ly|n't)$")
 _FEWEST_LETTERS = 3  # that are left of a word without its ending
 
 
-def stopped_by(
-    heard: Anonymized, ontology: Ontology, vocabulary: Collection[str]
-) -> tuple[Objection, ...]:
-    """Return the words of an utterance that the world and its language do not know, the first ``MOST_NAMED``.
+class StoppingWords:
+    """Finds the words of utterances that a world and its language do not know.
 
-    Words next to each other are said together; those with a capital inside the utterance are a name. ``vocabulary`` has
-    the words of the commands, in lower case. Takes linear time.
+    Args:
+        vocabulary: the words of the commands, in lower case. Without any, as in a world without a grammar, nobody can
+            tell which words are known, and none is found.
     """
-    known = {*vocabulary, *ENGLISH_WORDS, *_words_of_entities(ontology)}
-    stems = {_stem(word) for word in known}
-    found: list[Objection] = []
-    for start, end in _unknown(heard, known, stems):
-        said = heard.original[start:end]
-        is_name = said[0].isupper() and not said.isupper() and heard.original[:start].strip() != ""
-        if is_name and ontology.of_class("name"):
-            found.append(Objection(UNKNOWN_NAME, f"Nobody here is called {said}.", start, end))
-        else:
-            found.append(Objection(UNKNOWN_WORD, f"I do not know “{said}”.", start, end))
-        if len(found) == MOST_NAMED:
-            break
-    return tuple(found)
+
+    def __init__(self, ontology: Ontology, vocabulary: Collection[str]) -> None:
+        self._has_vocabulary = bool(vocabulary)
+        self._has_names = bool(ontology.of_class("name"))
+        self._known = {*vocabulary, *ENGLISH_WORDS, *_words_of_entities(ontology)}
+        self._stems = {_stem(word) for word in self._known}
+
+    def in_(self, heard: Anonymized) -> tuple[Objection, ...]:
+        """Return the unknown words of an utterance, the first ``MOST_NAMED``; those next to each other together.
+
+        Those with a capital inside the utterance are a name. Takes linear time.
+        """
+        found: list[Objection] = []
+        if not self._has_vocabulary:
+            return ()
+        for start, end in _unknown(heard, self._known, self._stems):
+            said = heard.original[start:end]
+            is_inside = heard.original[:start].strip() != ""
+            if is_inside and said[0].isupper() and not said.isupper() and self._has_names:
+                found.append(Objection(UNKNOWN_NAME, f"Nobody here is called {said}.", start, end))
+            else:
+                found.append(Objection(UNKNOWN_WORD, f"I do not know “{said}”.", start, end))
+            if len(found) == MOST_NAMED:
+                break
+        return tuple(found)
 
 
 def _unknown(heard: Anonymized, known: set[str], stems: set[str]) -> Iterator[tuple[int, int]]:

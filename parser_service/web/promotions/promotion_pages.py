@@ -8,6 +8,7 @@ from typing import Any
 from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
+from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
 from annotations.language.errors import Refusal
@@ -15,7 +16,9 @@ from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
-from parser_service.models import Promotion, TrainingRun
+from annotations.web.editing.undo import say_with_undo
+from parser_service.models import AnsweringOrder, Promotion, TrainingRun
+from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
 from parser_service.parsers.registry import untrained
 from parser_service.promotions.promoting import (
     MOST_REASON,
@@ -27,6 +30,8 @@ from parser_service.promotions.promoting import (
     roll_back,
 )
 from parser_service.promotions.score_evidence import compare_scores, judged_by
+from parser_service.serving.answering import answering_parts, choose_answering, version_of
+from parser_service.serving.calibrating import calibrated
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
 
 MOST_LISTED = 100  # runs that may be promoted, and decisions of the history
@@ -67,6 +72,7 @@ def promotions(request: WorldRequest, world: World) -> HttpResponse:
         .select_related("run", "decided_by")
         .order_by("-decided_at", "-pk")[:MOST_LISTED],
         "most_reason": MOST_REASON,
+        **_what_answers(world),
     }
     return render(request, "parser_service/promotions/promotions.html", context)
 
@@ -99,11 +105,35 @@ def promotion_decline(request: WorldRequest, world: World, pk: int) -> HttpRespo
     return _decide(request, world, lambda: decline(world, proposal.pk, request.user))
 
 
+@world_view(Duty.MANAGE, WRITE)
+def answering(request: WorldRequest, world: World) -> HttpResponse:
+    """Choose which parts answer, and the share of wrong acts that is allowed; the message offers to undo it."""
+    sent, before = request.POST, answering_of(world)
+    try:
+        allowed = float(sent.get("allowed_percent", "")) / 100
+    except ValueError:
+        messages.error(request, "Wrong acts that are allowed are a number of percent, such as 2.")
+        return redirect("promotions", world=world.name)
+
+    def choose() -> None:
+        version = number_in(sent.get("version", ""))
+        row = choose_answering(world, sent.get("order", ""), allowed, request.user, version)
+        values = {
+            "order": before.order,
+            "allowed_percent": 100 * before.allowed_wrong,
+            "version": row.version,
+        }
+        address = reverse("answering", kwargs={"world": world.name})
+        say_with_undo(request, "Saved. It answers so from now on.", address, **values)
+
+    return _decide(request, world, choose)
+
+
 @never_cache
 @world_view(Duty.VIEW)
 def parser_state(request: WorldRequest, world: World) -> HttpResponse:
     """Say which run the parse server has as the learned part: a part of other pages, which ask for it by themselves."""
-    context: dict[str, Any] = {"promoted": learned_part(world)}
+    context: dict[str, Any] = {"promoted": learned_part(world), "parts": answering_parts(world)}
     try:
         held = {each["world"]: each for each in client().parsers()}
         context["held"] = held.get(world.name, {})
@@ -118,6 +148,21 @@ def _decide(request: WorldRequest, world: World, verb: Callable[[], object]) -> 
     except Refusal as error:
         messages.error(request, error.message)
     return redirect("promotions", world=world.name)
+
+
+def _what_answers(world: World) -> dict[str, Any]:
+    """Return which parts answer, what was chosen about them, and how sure an answer has to be."""
+    row, parts = answering_of(world), answering_parts(world)
+    run = parts.run.pk if parts.run else None
+    return {
+        "answering": row,
+        "answering_version": version_of(row),
+        "allowed_percent": 100 * row.allowed_wrong,
+        "most_percent": round(100 * MOST_ALLOWED_WRONG),
+        "orders": AnsweringOrder.choices,
+        "parts": parts,
+        "calibrated": calibrated(world, run, row.order, row.allowed_wrong),
+    }
 
 
 def _candidates(world: World, present: TrainingRun | None) -> list[TrainingRun]:

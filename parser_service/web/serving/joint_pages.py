@@ -21,15 +21,21 @@ from parser_service.serving.parser_client import ParserAway
 from parser_service.web.serving.curl_commands import curl_command
 
 MOST_TEXT = MOST_COMMANDS * MOST_CHARACTERS  # of a field, which may hold all commands
-FIELDS = [f"command{number}" for number in range(1, MOST_COMMANDS + 1)]
+TOGETHER = "utterance"  # the field for all of them
+FIELDS = [TOGETHER, *(f"command{number}" for number in range(1, MOST_COMMANDS + 1))]
 
 
 @world_view(Duty.VIEW)
 def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
     """Show the commands that the address names; the plan comes when the page has loaded."""
+    utterance = _text_of(request.GET, TOGETHER)
+    commands = [(name, _text_of(request.GET, name)) for name in FIELDS[1:]]
+    is_one_by_one = any(text for _, text in commands)
     context = {
-        "commands": [(name, _text_of(request.GET, name)) for name in FIELDS],
-        "has_text": any(_text_of(request.GET, name) for name in FIELDS),
+        "utterance": utterance,
+        "commands": commands,
+        "has_text": bool(utterance) or is_one_by_one,
+        "asked": "both" if utterance and is_one_by_one else TOGETHER if utterance else "commands",
         "most_text": MOST_TEXT,
         **_asking(world),
     }

@@ -62,7 +62,7 @@ class JointQuery(TreeQuery):
 
 
 class UnderstoodSerializer(serializers.Serializer[Any]):
-    """One of the commands, and the plan of it alone."""
+    """One of the commands, the plan of it alone, and how sure the answer is."""
 
     utterance = serializers.CharField()
     is_unknown = serializers.BooleanField()
@@ -70,6 +70,9 @@ class UnderstoodSerializer(serializers.Serializer[Any]):
     english = serializers.CharField(allow_blank=True)
     task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
     spoken = serializers.CharField(allow_blank=True)
+    decision = serializers.CharField()
+    sureness = serializers.CharField()
+    probability = serializers.FloatField(allow_null=True)
 
 
 class JointSerializer(serializers.Serializer[Any]):

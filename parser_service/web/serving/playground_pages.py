@@ -1,10 +1,9 @@
-"""The playground: type an utterance, and see what the parser makes of it. The parse server answers."""
+"""The playground: type an utterance, and see what a robot gets. The parse server answers."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 from urllib.parse import urlencode
 
@@ -16,50 +15,46 @@ from django_htmx.http import replace_url
 
 from annotations.generation.example_commands import example_commands
 from annotations.language.errors import Refusal
+from annotations.language.recipes import MOST_COMMANDS
 from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.rows.from_rows import ready_templates
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import ScoreKind
+from parser_service.parsers.registry import ORACLE
 from parser_service.promotions.promoting import promoted_run
+from parser_service.serving.answering import answering_parts
 from parser_service.serving.default_runs import opening_run
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
 from parser_service.web.serving.curl_commands import curl_command
+from parser_service.web.serving.heard_pieces import heard_pieces
 
-MOST_OFFERED = 50  # other runs
+MOST_OFFERED = 50  # runs
 OWN_EXAMPLES = 3  # as many as there are keys for, beside the texts of the paper
 KEYS = (("1–9", "take an example"),)
 
 
-@dataclass(frozen=True, slots=True)
-class SpannedText:
-    """An utterance with the words that name entities, as the filter ``grounded`` shows it."""
-
-    text: str
-    spans: tuple[tuple[int, int, str, str], ...]
-
-    @classmethod
-    def heard_in(cls, answer: Mapping[str, Any]) -> SpannedText:
-        """Return the utterance that the parse server has answered."""
-        names = ("start", "end", "entity_class", "value")
-        spans = (tuple(span[name] for name in names) for span in answer["spans"])
-        return cls(answer["utterance"], tuple(spans))
-
-
 @world_view(Duty.VIEW)
 def playground(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the text and the run that the address names; the answer comes when the page has loaded."""
-    runs = world.runs.succeeded().select_related("split").order_by("-pk")
-    promoted = promoted_run(world)
-    opening = None if promoted else opening_run(world)
+    """Show the text and the part that the address names; the answer comes when the page has loaded.
+
+    The field ``run`` names what answers alone: a run, or the grammar oracle. Without it the world answers.
+    """
+    parts, promoted = answering_parts(world), promoted_run(world)
+    run, parser = _alone_in(request.GET)
+    runs = world.runs.succeeded().select_related("split").order_by("-pk")[:MOST_OFFERED]
+    others = [each for each in runs if each != promoted]
+    opening = None if parts else opening_run(world)
     context = {
         "text": _text_of(request.GET),
-        "promoted": promoted,
-        "chosen": number_in(request.GET.get("run", "")) or (opening.pk if opening else 0),
-        "others": [run for run in runs[:MOST_OFFERED] if run != promoted],
+        "parts": parts,
+        "has_templates": ready_templates(world).exists(),
+        "runs": [promoted, *others] if promoted else others,
+        "chosen": parser or run or (opening.pk if opening else ""),
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
         "page_keys": KEYS,
@@ -72,28 +67,27 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW, WRITE)
 def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the text, and show its answer."""
-    text, run = _text_of(request.POST), number_in(request.POST.get("run", ""))
-    context = {"text": text, "run": run, **_asking(world)}
+    text, (run, parser) = _text_of(request.POST), _alone_in(request.POST)
+    named = {name: value for name, value in (("run", run), ("parser", parser)) if value}
+    context = {"text": text, **_asking(world)}
     if text:
         try:
-            answer = client().parse(world.name, text, run=run or None)
+            answer = client().parse(world.name, text, run=run, parser=parser)
             context |= {
                 "answer": answer,
-                "curl": curl_command(
-                    request, world, "parse", {"utterance": text} | ({"run": run} if run else {})
-                ),
-                "heard": SpannedText.heard_in(answer),
-                "bars": [
-                    (each, _share(each["score"], answer["score_kind"]))
-                    for each in answer["candidates"]
-                ],
+                "curl": curl_command(request, world, "parse", {"utterance": text, **named}),
+                "pieces": heard_pieces(answer),
+                "bars": list(_bars(answer)),
+                "most_together": MOST_COMMANDS,
             }
         except ParserAway as error:
             context["away"] = error.message
         except ParserRefused as error:
             context["refused"] = error.message
     response = render(request, "parser_service/serving/_playground_answer.html", context)
-    query = urlencode({name: value for name, value in (("text", text), ("run", run)) if value})
+    query = urlencode(
+        {name: value for name, value in (("text", text), ("run", parser or run)) if value}
+    )
     address = reverse("playground", kwargs={"world": world.name})
     return replace_url(response, f"{address}?{query}" if query else address)
 
@@ -106,6 +100,7 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     context: dict[str, Any] = {
         "text": _text_of(sent),
         "run": run.pk if run else "",
+        "parser": sent.get("parser", ""),
         "right_form": sent.get("right_form", ""),
         "answered": sent.get("answered", ""),
         "reason": sent.get("reason", ""),
@@ -116,7 +111,7 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
         context["sent"] = report_wrong(
             world,
             context["text"],
-            say_parser(run),
+            say_parser(run, sent.get("parser", "")),
             request.user,
             given if is_changed else "",
             context["reason"],
@@ -144,10 +139,23 @@ def _examples(world: World) -> list[tuple[str, list[tuple[int, str]]]]:
     return [(legend, numbered) for legend, texts in groups if (numbered := list(texts))]
 
 
+def _bars(answer: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], float | None]]:
+    """Yield the candidates that are forms, each with the share of 1 that its bar has; None for a score that is none."""
+    for candidate in answer["candidates"]:
+        if candidate["is_well_formed"]:
+            yield candidate, _share(candidate["score"], answer["score_kind"])
+
+
 def _share(score: float, kind: str) -> float | None:
     if kind == ScoreKind.LOG_PROBABILITY:
         return math.exp(min(score, 0.0))
     return min(max(score, 0.0), 1.0) if kind else None
+
+
+def _alone_in(query: QueryDict) -> tuple[int | None, str]:
+    """Return the run that is to answer alone, and the parser that needs none; neither where the world answers."""
+    alone = query.get("run", "")
+    return (None, ORACLE) if alone == ORACLE else (number_in(alone) or None, "")
 
 
 def _text_of(query: QueryDict) -> str:

@@ -46,7 +46,9 @@ from annotations.world_archive.archive_tables import tables
 from annotations.world_archive.world_export import world_archive
 from annotations.world_archive.world_import import import_world
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
+from parser_service.models.answering import answering_of
 from parser_service.robots.action_naming import names_of, store_names, version_of
+from parser_service.serving.answering import choose_answering
 from tests.annotations.world_archive.packing import (
     everything_of,
     members_of,
@@ -147,6 +149,12 @@ def test_the_names_of_actions_go_with_the_world(tiny_world, annotator):
     assert moment == tiny_world.action_names.changed_at
 
 
+def test_the_choice_of_what_answers_goes_with_the_world(tiny_world, admin):
+    choose_answering(tiny_world, "oracle", 0.1, admin, 0)
+    row = answering_of(same_again(tiny_world))
+    assert (row.order, row.allowed_wrong, row.changed_by) == ("oracle", 0.1, admin)
+
+
 @pytest.mark.parametrize(
     "names",
     [
@@ -173,7 +181,14 @@ def test_an_archive_from_before_there_were_utterances(tiny_world):
     members = members_of(pack(tiny_world))
     manifest = json.loads(members["world.json"])
     later = ("utterances", "labels", "work_items", "assignments", "work_shares")
-    for name in (*later, "audit_findings", "audit_reasons", "audit_decisions", "action_names"):
+    for name in (
+        *later,
+        "audit_findings",
+        "audit_reasons",
+        "audit_decisions",
+        "action_names",
+        "answering",
+    ):
         del members[f"rows/{name}.jsonl"], manifest["rows"][name]
     members["world.json"] = json.dumps(manifest).encode()
     import_world("again", pack_members(members))

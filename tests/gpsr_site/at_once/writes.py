@@ -49,6 +49,9 @@ CHANGES: dict[tuple[str, str], Body] = {
     ("api:world", "PATCH"): lambda *each: {"description": different(*each)},
     ("api:guidelines", "PATCH"): lambda *each: {"text": different(*each)},
     ("api:queue-settings", "PATCH"): lambda writer, turn: {"unlabelled": 1 + writer + 30 * turn},
+    ("api:answerer", "PATCH"): lambda writer, turn: {
+        "allowed_wrong": (1 + writer + 30 * turn) / 1000
+    },
     ("api:account-detail", "PATCH"): lambda writer, turn: {"is_active": bool(turn % 2)},
     ("api:member-detail", "PATCH"): lambda writer, turn: {
         "roles": ["annotator", "admin"][: 1 + turn % 2]

@@ -303,6 +303,8 @@ API_POLICY = [
     Rule("api:work-item-finish", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:work-item-give-back", NO_TOKEN, NOWHERE, *[CLASH] * 3, method="post"),
     Rule("api:parse", NO_TOKEN, NOWHERE, *[NO_JSON] * 3, method="post"),
+    Rule("api:answerer", *READ),
+    Rule("api:answerer", *admins(NO_VERSION), method="patch"),
     Rule("api:promotion-list", *READ),
     Rule("api:promotion-list", *admins(NO_JSON), method="post"),
     Rule("api:promotion-roll-back", *admins(NO_JSON), method="post"),

@@ -169,6 +169,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "playground_ask": "post parse",
     "joint_plan_ask": "post joint-plan",
     "playground_wrong": "post parse-wrong",
+    "answering": "patch answerer",
     "promotion_promote": "post promotion-list",
     "promotion_roll_back": "post promotion-roll-back",
     "promotion_decline": "post promotion-decline",

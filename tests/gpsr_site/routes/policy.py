@@ -293,6 +293,7 @@ POLICY = [
         Rule(name, LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post")
         for name in ("error_category_move", "error_category_delete")
     ),
+    Rule("answering", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("promotion_promote", LOG_IN, NOWHERE, NO, NO, NOWHERE, method="post"),
     Rule("promotion_roll_back", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("promotion_decline", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),

@@ -4,7 +4,7 @@ import pytest
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Entity, Ontology
-from annotations.language.requests import NearCommands, objections, stopped_by
+from annotations.language.requests import NearCommands, StoppingWords, objections
 from tests.annotations.language.requests.wordings import (
     FINE,
     FINE_TOO,
@@ -68,8 +68,12 @@ def test_an_objection_says_where_it_stands():
     ],
 )
 def test_what_nobody_knows_is_named(said, found):
-    stops = stopped_by(ANONYMIZER.anonymize(said), ONTOLOGY, VOCABULARY)
+    stops = StoppingWords(ONTOLOGY, VOCABULARY).in_(ANONYMIZER.anonymize(said))
     assert [(each.code, said[each.start : each.end]) for each in stops] == found
+
+
+def test_without_a_grammar_no_word_is_called_unknown():
+    assert StoppingWords(ONTOLOGY, ()).in_(ANONYMIZER.anonymize("bring me the flurb")) == ()
 
 
 def test_near_commands_share_telling_words():

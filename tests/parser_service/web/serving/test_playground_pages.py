@@ -9,6 +9,7 @@ from dataclasses import replace
 from html import unescape
 
 import pytest
+from django.template.loader import render_to_string
 from django.test import Client
 
 from annotations.background.progress import UNWATCHED
@@ -18,10 +19,13 @@ from annotations.models import ApiToken, Command, LogicalForm, Proposal, Utteran
 from parser_service.labelling.label_candidates import PERSON, candidates_for
 from parser_service.labelling.parser_proposals import propose
 from parser_service.parsers.knn import NearestNeighbour
+from parser_service.parsers.registry import ORACLE
 from parser_service.promotions.promoting import promote
 from parser_service.serving.parser_client import AWAY
 from parser_service.templatetags.provenance import cut_in_words
 from parser_service.templatetags.steps import referents
+from parser_service.web.serving.heard_pieces import heard_pieces
+from tests.annotations.conftest import import_tiny
 from tests.annotations.language.sample_ontology import HOME
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.served import make_home, trained_run
@@ -167,9 +171,89 @@ def test_the_state_says_which_run_answers(answering, anna):
     assert f'<a href="/w/home/runs/{answering.pk}/"' in state.content.decode()
 
 
-def test_without_a_trained_parser_the_page_says_so(world, anna, adam):
-    assert '<div class="empty">' in anna.get(PAGE).content.decode()
-    assert "/runs/new/" in adam.get(PAGE).content.decode()
+def test_a_world_without_templates_and_runs_says_so(world, anna, rene):
+    assert "/w/home/templates/new/" in anna.get(PAGE).content.decode()
+    page = rene.get(PAGE).content.decode()
+    assert '<div class="empty">' in page and "/templates/new/" not in page
+
+
+def parts_offered(page: str) -> list[str]:
+    """The values of the select that says what answers."""
+    return re.findall(r'<option value="([^"]*)"', page)
+
+
+def test_a_world_with_templates_answers_without_a_run(world, anna, parse_server):  # noqa: F811
+    import_tiny(world)
+    parse_server.update()
+    parse_server.find("home", None, patience=1)  # threads do not see what a test has written
+    assert parts_offered(anna.get(PAGE).content.decode()) == ["", ORACLE]
+    answer = anna.post(f"{PAGE}ask/", {"text": "locate the tea"}).context["answer"]
+    assert (answer["parser"], answer["run"]) == (ORACLE, None)
+
+
+def test_each_part_is_asked_alone(answering, anna):
+    assert parts_offered(anna.get(PAGE).content.decode()) == ["", str(answering.pk)]
+    answer = anna.post(f"{PAGE}ask/", {"text": "find the bowl", "run": ORACLE})
+    assert "home" in answer.context["refused"]  # it has no templates
+    assert answer["HX-Replace-Url"].endswith(f"&run={ORACLE}")
+
+
+@pytest.mark.parametrize(
+    ("decision", "probability", "sureness"),
+    [
+        ("act", 0.99, "sure"),
+        ("confirm", 0.77, "77 %: shall I?"),
+        ("ask", 0.9, "90 %: one question"),
+        ("refuse", 0.03, "unsure: 3 %"),
+        ("refuse", None, "not understood"),
+    ],
+)
+def test_how_sure_an_answer_is_stands_in_words_with_one_figure(decision, probability, sureness):
+    answer = {"decision": decision, "probability": probability, "sureness": sureness}
+    shown = render_to_string("parser_service/_sureness.html", {"answer": answer})
+    assert f'data-decision="{decision}"' in shown
+    assert sureness in shown.replace(sureness.capitalize(), sureness)
+    assert shown.count("%") == (probability is not None)
+
+
+def test_the_plan_of_an_answer_stands_beside_how_sure_it_is(answering, anna):
+    page = asked(anna, "bring me the red cup")
+    assert (
+        page.index('class="sureness"')
+        < page.index('class="plan-spoken"')
+        < page.index("plan-steps")
+    )
+    assert page.count('class="plan-steps"') == page.count('class="sureness"')
+
+
+HEARD = {
+    "utterance": "uh bring the apple to Haley",
+    "heard": [
+        {"kind": "filler", "start": 0, "end": 2, "said": "uh", "heard": ""},
+        {"kind": "sound", "start": 22, "end": 27, "said": "Haley", "heard": "Hailey"},
+    ],
+    "spans": [
+        {"start": 13, "end": 18, "entity_class": "object", "value": "apple"},
+        {"start": 22, "end": 27, "entity_class": "name", "value": "Hailey"},
+    ],
+}
+
+
+def test_what_was_heard_otherwise_is_marked_where_it_was_said():
+    pieces = heard_pieces(HEARD)
+    assert "".join(piece.text for piece in pieces) == HEARD["utterance"]
+    assert [(piece.text, piece.heard) for piece in pieces if piece.why] == [
+        ("uh", ""),
+        ("Haley", "Hailey"),
+    ]
+    assert [piece.value for piece in pieces if piece.entity_class] == ["apple"]
+    put_in = {"kind": "article", "start": 3, "end": 3, "said": "", "heard": "the"}
+    (inserted,) = [
+        piece
+        for piece in heard_pieces({"utterance": "go home", "heard": [put_in], "spans": []})
+        if piece.why
+    ]
+    assert (inserted.text, inserted.heard) == ("", "the")
 
 
 def wrong(client, **sent: object):
@@ -183,6 +267,8 @@ def test_a_wrong_answer_goes_to_the_work_queue_with_the_right_form(run, anna):
     assert (item.utterance.text, item.kind) == ("get the mug", "requested")
     assert item.reason.startswith("anna ") and item.reason.endswith(" it is not a search")
     assert f" Nearest neighbour (run {run.pk}) " in item.reason
+    wrong(anna, text="find the mug", parser=ORACLE)
+    assert " Grammar oracle " in WorkItem.objects.latest("pk").reason
     first = candidates_for(item.utterance)[0]
     assert first.form == FETCH and first.sources[0] == PERSON
 
