@@ -308,15 +308,16 @@ class Answerer:
         # What is no form is not shown.
         readings = [each for each in readings if each.slots is not None]
         fits, reasons = Fit(), ()
-        if given.part is self.learned:
+        if given.part is self.learned or not readings:
             reasons = objections(heard)
+        if given.part is self.learned:
             readings, fits = self._fit(readings, heard)
         about = replace(self._about(given, heard, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
             probability = self.calibrated.calibration.probability(about.evidence)
         decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
-        if about.evidence is None:
+        if decision is Decision.REFUSE:
             reasons = (*reasons, *self.stopping.in_(heard))
         reasons = (*reasons, *_misfits(fits))
         return Answer(given, (), heard, readings, about, probability, decision, reasons)
@@ -502,7 +503,7 @@ class Answerer:
 
     def _nearest(self, answer: Answer) -> list[str]:
         """Return commands that are near an utterance that was not understood, with entities of the world."""
-        if not answer.is_unknown or answer.several or answer.given.part is None:
+        if answer.decision is not Decision.REFUSE or answer.several or answer.given.part is None:
             return []
         language = self.writer.language
         near = language.near.nearest(answer.heard)

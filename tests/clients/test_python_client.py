@@ -12,7 +12,7 @@ import sys
 import tomllib
 
 import pytest
-from command_desk import SORRY_AWAY, CommandDesk
+from command_desk import SORRY_AWAY, WILL, WILL_NOT, CommandDesk
 from pytest_django.live_server_helper import LiveServer
 
 from annotations.models import ApiToken, Split
@@ -39,6 +39,25 @@ def test_an_utterance_is_parsed(home):
     assert "red cup" in parse.best.grounded
     assert parse.best.plan is not None and parse.best.plan.is_executable
     assert parse.best.plan.steps[0].action == "find"
+    assert (parse.parser, parse.run, parse.decision) == ("knn", parse.raw["run"], "confirm")
+    assert not parse.may_act and 0 < parse.probability < 1 and "red cup" in parse.spoken
+    assert (parse.reasons, parse.several, parse.joint_plan, parse.agrees) == ((), (), None, None)
+
+
+def test_a_refusal_says_why(home):
+    parse = home.parse("Do not bring me the red cup")
+    assert (parse.decision, parse.best, parse.may_act) == ("refuse", None, False)
+    assert [each.code for each in parse.reasons] == ["forbidden"]
+    assert parse.reasons[0].message in parse.spoken
+
+
+def test_one_run_is_asked_alone(home):
+    run = home.parse("find the red cup").run
+    assert home.parse("find the red cup", run=run).run == run
+    (parse,) = home.parse_many(["find the red cup"], run=run)
+    assert parse.run == run
+    with pytest.raises(Refused):
+        home.parse("find the red cup", run=run, parser="grammar-oracle")
 
 
 def test_a_form_becomes_a_plan_and_a_behaviour_tree(home):
@@ -142,17 +161,17 @@ def test_refusals_and_absence_are_sentences(home, live_server, settings):
     assert "nonsense" not in repr(vars(Workbench(live_server.url, "home", "nonsense")))
 
 
-def test_a_desk_asks_and_hands_over_the_agreed_plan(home, settings):
+def test_a_desk_confirms_asks_refuses_and_hands_over_what_is_agreed(home, settings):
     said: list[str] = []
     plans: list[str] = []
     desk = CommandDesk(home, said.append, plans.append)
-    for text in ("bring me the flurb", "", "new", "yes", "find the bowl", "stop"):
+    for text in ("find the bowl", "", "no", "find the bowl", "Do not find it", "find the bowl"):
         desk.hear(text)
-    assert said[0].startswith("Which object do you mean by “flurb”?")
-    assert said[1:3] == ["Shall I bring you the flurb?", "I will do it."]
-    assert said[4] == "I will not do it."
+    assert not plans and said[1] == WILL_NOT and "bowl" in said[-1]
+    desk.hear("Yes!")
+    assert said[-1] == WILL
     (plan,) = map(json.loads, plans)
-    assert plan["steps"][0]["action"] == "bring"
+    assert [step["primitive"] for step in plan["steps"]] == ["find_object"]
     settings.PARSER_URL = "http://127.0.0.1:9"
     desk.hear("find the bowl")
     assert said[-1] == SORRY_AWAY
@@ -199,16 +218,17 @@ def test_the_examples_of_the_readme_run(
     replaced = {
         '"http://localhost:8000"': repr(live_server.url),
         f'"{STARTER_WORLD}"': '"home"',
-        '"first"': f'"{Split.objects.get().name}"',
+        '"by-command"': f'"{Split.objects.get().name}"',
     }
     for said, stands_for in replaced.items():
         assert said in text
         text = text.replace(said, stands_for)
     monkeypatch.chdir(tmp_path)
-    plans, answers = [], iter(["the bowl", "yes", "yes", "no", "no", "no", "no"])
+    plans, answers = [], iter(["the bowl", "yes"])
     names = {"token": token, "run": plans.append, "input": lambda _: next(answers)}
     exec(compile(text, "README.md", "exec"), names)
     assert "go to the kitchen" in capsys.readouterr().out
+    assert [plan.is_executable for plan in plans] == [True]
     assert (tmp_path / "train.jsonl").exists()
 
 
@@ -245,4 +265,4 @@ def test_the_request_that_a_page_shows_is_answered(home, annotator, live_server,
         check=True,
     )
     answer = json.loads(done.stdout)
-    assert answer["utterance"] == "bring me the tumbler" and answer["candidates"]
+    assert answer["utterance"] == "get me the tumbler" and answer["decision"]

@@ -32,11 +32,12 @@ class StoppingWords:
     """Finds the words of utterances that a world and its language do not know.
 
     Args:
-        vocabulary: the words of the commands, in lower case. Without any, nobody can tell which words are unknown.
+        vocabulary: the words of the commands, in lower case. Without any, as in a world without a grammar, nobody can
+            tell which words are known, and none is found.
     """
 
     def __init__(self, ontology: Ontology, vocabulary: Collection[str]) -> None:
-        self._can_tell = bool(vocabulary)
+        self._has_vocabulary = bool(vocabulary)
         self._has_names = bool(ontology.of_class("name"))
         self._known = {*vocabulary, *ENGLISH_WORDS, *_words_of_entities(ontology)}
         self._stems = {_stem(word) for word in self._known}
@@ -47,7 +48,9 @@ class StoppingWords:
         Those with a capital inside the utterance are a name. Takes linear time.
         """
         found: list[Objection] = []
-        for start, end in _unknown(heard, self._known, self._stems) if self._can_tell else ():
+        if not self._has_vocabulary:
+            return ()
+        for start, end in _unknown(heard, self._known, self._stems):
             said = heard.original[start:end]
             is_inside = heard.original[:start].strip() != ""
             if is_inside and said[0].isupper() and not said.isupper() and self._has_names:

@@ -3,7 +3,7 @@
     GPSR_TOKEN=… python ros2_command_node.py --ros-args -p url:=http://localhost:8000 -p world:=household
 
 Topics: ``speech/text`` (std_msgs/String, what was recognised), ``speech/say`` (std_msgs/String, to be spoken) and
-``command/plan`` (std_msgs/String, the JSON of the plan that somebody has agreed to).
+``command/plan`` (std_msgs/String, the JSON of a plan in primitives that is sure, or that somebody has agreed to).
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from gpsr_client.dialogue import Dialogue, SlotQuestion
 from gpsr_client.errors import Away, Refused, WorkbenchError
 from gpsr_client.responses import (
     Candidate,
+    HeardChange,
     Interleaving,
     JointPlan,
     Note,
@@ -14,6 +15,7 @@ from gpsr_client.responses import (
     Parse,
     Plan,
     PlanProblem,
+    Reason,
     Step,
     TaskPlan,
     TaskStep,
@@ -23,6 +25,7 @@ __all__ = [
     "Away",
     "Candidate",
     "Dialogue",
+    "HeardChange",
     "Interleaving",
     "JointPlan",
     "Note",
@@ -30,6 +33,7 @@ __all__ = [
     "Parse",
     "Plan",
     "PlanProblem",
+    "Reason",
     "Refused",
     "SlotQuestion",
     "Step",

@@ -33,15 +33,32 @@ class Workbench:
         self._transport = Transport(url, token, timeout)
         self._path = f"worlds/{quote(world, safe='')}/"
 
-    def parse(self, utterance: str, beam: int = 5, run: int | None = None) -> Parse:
-        """Return the candidates for an utterance, of the promoted parser or of a run."""
-        body: dict[str, object] = {"utterance": utterance, "beam": beam}
-        if run is not None:
-            body["run"] = run
+    def parse(
+        self,
+        utterance: str = "",
+        beam: int = 5,
+        run: int | None = None,
+        parser: str = "",
+        alternatives: Iterable[tuple[str, float]] = (),
+    ) -> Parse:
+        """Return the answer of the world to an utterance, or that of a run or of a parser that needs none alone.
+
+        In place of an utterance ``alternatives`` are what a recogniser may have heard, each with its score, a
+        probability or the logarithm of one: the best that is understood is answered.
+        """
+        offered = [{"utterance": text, "score": score} for text, score in alternatives]
+        body: dict[str, object] = {"beam": beam, **_asked_alone(run, parser)}
+        body |= {"alternatives": offered} if offered else {"utterance": utterance}
         return Parse.from_json(self._transport.post(f"{self._path}parse/", body))
 
-    def parse_many(self, utterances: Iterable[str], beam: int = 5) -> Iterator[Parse]:
-        """Yield the answers to many utterances, in order, as they come; one parser answers all of them.
+    def parse_many(
+        self,
+        utterances: Iterable[str],
+        beam: int = 5,
+        run: int | None = None,
+        parser: str = "",
+    ) -> Iterator[Parse]:
+        """Yield the answers to many utterances, in order, as they come; all of them are asked the same parts.
 
         Raises WorkbenchError with a sentence of the workbench for an utterance that cannot be parsed, and
         Away if the answer ends before the last of them.
@@ -51,9 +68,8 @@ class Workbench:
             return
         lines, answered = "".join(asked).encode(), 0
         path = f"{self._path}parse/"
-        with self._transport.open(
-            "POST", path, lines, "application/jsonl", {"beam": beam}
-        ) as response:
+        query = {"beam": beam, **_asked_alone(run, parser)}
+        with self._transport.open("POST", path, lines, "application/jsonl", query) as response:
             try:
                 for line in response:
                     value = json.loads(line)
@@ -195,6 +211,11 @@ class Workbench:
         finally:
             beside.unlink(missing_ok=True)
         return target
+
+
+def _asked_alone(run: int | None, parser: str) -> dict[str, object]:
+    named = {"run": run, "parser": parser}
+    return {name: value for name, value in named.items() if value}
 
 
 def _say_broken_off(answered: int, asked: int, why: str = "The connection ended.") -> str:

@@ -50,7 +50,7 @@ class Dialogue:
 
     @property
     def is_agreed(self) -> bool:
-        """Whether the person has agreed to the whole command, so that the robot may act."""
+        """Whether the person has agreed to the whole command. The robot acts where ``task_plan`` is executable too."""
         return self.phase == "done"
 
     @property

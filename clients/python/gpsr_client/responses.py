@@ -177,6 +177,12 @@ class JointPlan:
         return tuple(number for numbers in missed for number in numbers)
 
     @classmethod
+    def of_parse(cls, value: dict[str, Any]) -> JointPlan | None:
+        """Return that of an answer to ``parse``, spoken as the answer is; None where it has none."""
+        keys = ("joint_plan", "spoken")
+        return cls.from_json({key: value[key] for key in keys}) if value.get("joint_plan") else None
+
+    @classmethod
     def from_json(cls, value: dict[str, Any]) -> JointPlan:
         joint = value["joint_plan"]
         return cls(
@@ -259,22 +265,80 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Parse:
-    """The candidates for an utterance, the best first; ``is_unknown`` where there is nothing to act on.
+class HeardChange:
+    """What was heard otherwise than it was said, in the characters ``start`` to ``end`` of the utterance.
 
-    ``warnings`` are about class tokens of the utterance that stand for nothing in the world.
+    ``heard`` is empty where something was passed over, ``said`` where something was missing.
+    """
+
+    kind: str
+    start: int
+    end: int
+    said: str
+    heard: str
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> HeardChange:
+        return cls(value["kind"], value["start"], value["end"], value["said"], value["heard"])
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why the robot does not act at once: ``code`` is for programs, ``message`` for people."""
+
+    code: str
+    message: str
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Reason:
+        return cls(value["code"], value["message"])
+
+
+@dataclass(frozen=True)
+class Parse:
+    """The answer to an utterance: what to do with it, and the candidates, the best first.
+
+    ``decision`` is what a robot may do. ``spoken`` is what it says by it.
+
+    - ``act``: carry out the plan of ``best``. Nothing else is a permission; that a plan is executable is none.
+    - ``confirm``: ask ``spoken`` ("Shall I …?"), and carry it out after a yes.
+    - ``ask``: something is missing or could be either; ask ``spoken``, or hold a dialogue.
+    - ``refuse``: say ``spoken``, which names what stopped it; ``nearest`` are commands that are near.
+
+    ``parser`` is the part that answered, ``run`` its run if it has one. ``agrees``: whether the other part gives the
+    same form; None where it was not asked or is silent. ``probability`` is None where nothing was understood,
+    ``sureness`` is the same in words. ``heard`` are changes made to the words, ``reasons`` say why it does not act.
+    Where the utterance holds several commands, ``several`` has the answer to each, and ``joint_plan`` one plan of all
+    of them. ``warnings`` are about class tokens of the utterance that stand for nothing in the world.
     """
 
     utterance: str
     anonymized: str
+    parser: str
+    run: int | None
     is_unknown: bool
+    decision: str
+    probability: float | None
+    sureness: str
+    spoken: str
     candidates: tuple[Candidate, ...]
+    heard: tuple[HeardChange, ...]
+    reasons: tuple[Reason, ...]
+    nearest: tuple[str, ...]
+    agrees: bool | None
+    several: tuple[Parse, ...]
+    joint_plan: JointPlan | None
     warnings: tuple[str, ...]
     raw: dict[str, Any] = field(repr=False, compare=False)
 
     @property
+    def may_act(self) -> bool:
+        """Whether the robot may carry out the plan without a word of the person."""
+        return self.decision == "act"
+
+    @property
     def best(self) -> Candidate | None:
-        """The best candidate; None where the parser abstains."""
+        """The best candidate; None where nothing was understood."""
         return None if self.is_unknown or not self.candidates else self.candidates[0]
 
     @classmethod
@@ -282,8 +346,20 @@ class Parse:
         return cls(
             value["utterance"],
             value["anonymized"],
+            value["parser"],
+            value["run"],
             value["is_unknown"],
+            value["decision"],
+            value["probability"],
+            value["sureness"],
+            value["spoken"],
             tuple(map(Candidate.from_json, value["candidates"])),
+            tuple(map(HeardChange.from_json, value["heard"])),
+            tuple(map(Reason.from_json, value["reasons"])),
+            tuple(value["nearest"]),
+            value["agrees"],
+            tuple(map(Parse.from_json, value.get("several", ()))),
+            JointPlan.of_parse(value),
             tuple(value["warnings"]),
             value,
         )

@@ -165,7 +165,12 @@ class CandidateSerializer(serializers.Serializer[Any]):
         allow_null=True, help_text="As docs/reference/recipes.md describes it."
     )
     spoken = serializers.CharField(
-        allow_blank=True, help_text="What the robot says it will do, in a sentence."
+        allow_blank=True,
+        help_text="Of the first candidate what the answer says; of others what the robot would do.",
+    )
+    values = serializers.ListField(
+        child=serializers.CharField(allow_null=True),
+        help_text="The entities of the class tokens in order, where the parser says which words it took.",
     )
 
 

@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 
 import pytest
+from django.utils import timezone
 
+from annotations.importing.generator_import import import_generator
 from annotations.models import Entity, World
+from parser_service.models import Answering, AnsweringOrder
 from parser_service.promotions.promoting import promote
 from parser_service.runs.checkpoints import model_folder, remove_folder
 from parser_service.runs.requests import run_requests
 from parser_service.runs.training.knowledge import knowledge_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import NotServed, Shelf
+from tests.annotations.conftest import TINY, as_bytes
+from tests.parser_service.made_up import make_split
 from tests.parser_service.served import make_home, trained_run
 
 RED_CUP = '( bring ( lambda $1 e ( is_a $1 " red cup " ) ) )'
@@ -219,3 +224,106 @@ def test_an_encoder_decoder_is_served_without_the_folder_that_it_was_trained_fro
     assert (answer["parser"], answer["score_kind"]) == ("t5", "log_probability")
     assert answer["candidates"][0]["score"] < 0
     assert all(candidate["english"] for candidate in answer["candidates"])
+
+
+@pytest.fixture
+def tiny(world):
+    """A world with templates and no run."""
+    assert not import_generator(world.name, as_bytes(TINY)).problems
+    return world
+
+
+def who_answers(shelf: Shelf) -> list[str]:
+    """Return who answers a command of the templates, and a sentence that only a learned part may understand."""
+    said = ("find the tea", "where is the tea now")
+    return [answer_of(shelf, each)["parser"] for each in said]
+
+
+def test_the_oracle_of_a_world_without_a_run_answers_when_it_is_first_asked(tiny, shelf):
+    shelf.update()
+    assert shelf.is_ready and shelf.describe() == []
+    answer = answer_of(shelf, "find the tea")
+    assert (answer["parser"], answer["run"], answer["decision"]) == ("grammar-oracle", None, "act")
+    held = shelf.find("home", None, 0)
+    shelf.update()
+    assert shelf.find("home", None, 0) is held
+    Entity.objects.create(ontology=tiny.ontology, entity_class="object", text="gin", position=99)
+    shelf.update()
+    assert answer_of(shelf, "find the gin")["decision"] == "act"
+
+
+def test_both_parts_of_a_world_are_held(tiny, shelf):
+    run = trained_run(make_split(tiny))
+    promote(run, None)
+    shelf.update()
+    assert who_answers(shelf) == ["grammar-oracle", "knn"]
+    assert answer_of(shelf, "find the tea", run.pk)["parser"] == "knn"
+    alone = shelf.find("home", None, 0, "grammar-oracle")
+    assert (alone.learned, alone.oracle.name) == (None, "grammar-oracle")
+
+
+def test_a_world_without_templates_has_no_oracle_to_ask(split, shelf):
+    promote(trained_run(split), None)
+    shelf.update()
+    with pytest.raises(NotServed) as refused:
+        shelf.find("home", None, 0, "grammar-oracle")
+    assert (refused.value.status, refused.value.code) == (409, "no_templates")
+
+
+@pytest.mark.parametrize(
+    ("order", "parsers"),
+    [
+        (AnsweringOrder.ORACLE, ["grammar-oracle", "grammar-oracle"]),
+        (AnsweringOrder.LEARNED, ["knn", "knn"]),
+    ],
+)
+def test_a_changed_order_takes_effect_with_the_next_look(tiny, shelf, order, parsers):
+    promote(trained_run(make_split(tiny)), None)
+    shelf.update()
+    assert who_answers(shelf) == ["grammar-oracle", "knn"]
+    Answering.objects.create(world=tiny, order=order)
+    shelf.update()
+    assert who_answers(shelf) == parsers
+    Answering.objects.all().delete()
+    shelf.update()
+    assert who_answers(shelf) == ["grammar-oracle", "knn"]
+
+
+def test_a_learned_part_that_cannot_be_loaded_leaves_the_oracle_with_a_warning(tiny, shelf):
+    run = trained_run(make_split(tiny))
+    promote(run, None)
+    remove_folder(model_folder(run.pk))
+    shelf.update()
+    answer = answer_of(shelf, "find the tea")
+    assert (answer["parser"], answer["decision"]) == ("grammar-oracle", "act")
+    (said,) = shelf.describe()
+    assert said["run"] is None and said["problem"] in answer["warnings"]
+
+
+def test_a_learned_part_that_went_leaves_the_oracle_alone(tiny, shelf):
+    promote(trained_run(make_split(tiny)), None)
+    shelf.update()
+    tiny.promotions.all().delete()
+    shelf.update()
+    assert who_answers(shelf) == ["grammar-oracle", "grammar-oracle"]
+    assert shelf.describe() == []
+
+
+def test_a_world_that_is_deleted_answers_no_more(tiny, shelf):
+    shelf.update()
+    assert answer_of(shelf, "find the tea")["decision"] == "act"
+    World.objects.filter(pk=tiny.pk).update(deletion_requested_at=timezone.now())
+    shelf.update()
+    with pytest.raises(NotServed) as refused:
+        shelf.find("home", None, 0)
+    assert refused.value.status == 404
+
+
+def test_a_share_of_wrong_acts_that_is_changed_decides_anew(tiny, shelf):
+    shelf.update()
+    before = answer_of(shelf, "find the tea")
+    Answering.objects.create(world=tiny, allowed_wrong=0.0)
+    shelf.update()
+    after = answer_of(shelf, "find the tea")
+    assert (before["decision"], after["decision"]) == ("act", "confirm")
+    assert before["probability"] == after["probability"]

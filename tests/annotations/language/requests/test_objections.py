@@ -72,6 +72,10 @@ def test_what_nobody_knows_is_named(said, found):
     assert [(each.code, said[each.start : each.end]) for each in stops] == found
 
 
+def test_without_a_grammar_no_word_is_called_unknown():
+    assert StoppingWords(ONTOLOGY, ()).in_(ANONYMIZER.anonymize("bring me the flurb")) == ()
+
+
 def test_near_commands_share_telling_words():
     near = NearCommands(
         [
