@@ -187,14 +187,14 @@ class Answerer:
         """Return the answer to each utterance, as JSON. Raises as ``ask``."""
         return [self.write(each) for each in self.ask(utterances, beam)]
 
-    def ask(self, utterances: Sequence[str], beam: int) -> list[PartAnswer]:
-        """Return what the parts answer to each utterance. Raises NotServed where one asks a server that does not
-        answer in time."""
-        answers = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
-        answers = self._ask_learned(answers, beam)
+    def ask(self, utterances: Sequence[str], beam: int) -> list[Answer]:
+        """Return the answer to each utterance. Raises NotServed where a part asks a server that does not answer in
+        time."""
+        given = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
+        answers = map(self.judge, self._ask_learned(given, beam))
         return [self._cut_again(each, beam) for each in answers]
 
-    def ask_best(self, alternatives: Sequence[tuple[str, float]], beam: int) -> PartAnswer:
+    def ask_best(self, alternatives: Sequence[tuple[str, float]], beam: int) -> Answer:
         """Return the answer to the best of a recogniser's alternatives that is understood, or to the first; each has a
         text and a score. Raises as ``ask``."""
         texts = [text for text, _ in alternatives]
@@ -206,9 +206,9 @@ class Answerer:
         )
         return answers[texts[best or 0]]
 
-    def _rate(self, given: PartAnswer) -> float | None:
+    def _rate(self, answer: Answer) -> float | None:
         """Return how well an utterance was understood, higher is better; None where it was not."""
-        answer = self.judge(given)
+        given = answer.given
         if answer.is_unknown or answer.probability is None:
             return None
         return log(answer.probability) - sum(
@@ -259,23 +259,24 @@ class Answerer:
         if len(texts) == 1:  # an announcement was taken off
             return alone[0].said_in(given.utterance)
         if self.oracle is None:
-            alone = [self._cut_again(each, beam) for each in self._ask_learned(alone, beam)]
+            judged = map(self.judge, self._ask_learned(alone, beam))
+            alone = [self._cut_again(each, beam).given for each in judged]
         return replace(given, pieces=tuple(alone))
 
-    def _cut_again(self, given: PartAnswer, beam: int) -> PartAnswer:
+    def _cut_again(self, answer: Answer, beam: int) -> Answer:
         """Return the answer with one for each command, where both parts together understand some of them and neither
         understands all together, or the learned part leaves something out."""
+        given, evidence = answer.given, answer.about.evidence
         if given.pieces or self.learned is None or given.part is not self.learned:
-            return given
-        evidence = self.judge(given).about.evidence
+            return answer
         if evidence is not None and not evidence.left_out:
-            return given
+            return answer
         pieces = pieces_of(given.utterance, self._grammar, self._judge)
         is_better = all if evidence else any
         if len(pieces) < 2 or not is_better(each.is_understood for each in pieces):
-            return given
+            return answer
         alone = self._ask_oracle([each.text for each in pieces], beam)
-        return replace(given, pieces=tuple(self._ask_learned(alone, beam)))
+        return self.judge(replace(given, pieces=tuple(self._ask_learned(alone, beam))))
 
     @property
     def _grammar(self) -> GrammarOracle | None:
@@ -287,14 +288,14 @@ class Answerer:
         best = [next(iter(each), None) for each in self.learned.ask(texts, 1)]
         return [None if each is None or each.form == UNKNOWN else each.score for each in best]
 
-    def heard_nothing(self) -> PartAnswer:
+    def heard_nothing(self) -> Answer:
         """Return what there is to write where nothing was said: no candidate, without asking any part."""
-        return PartAnswer("", "", self.oracle or self.learned)
+        return self.judge(PartAnswer("", "", self.oracle or self.learned))
 
     def measure(self, utterances: Sequence[str]) -> list[AnsweredForm]:
         """Return what is known of the answer to each utterance, with its share of the processor time."""
         began = time.process_time()
-        answers = [self.judge(each).about for each in self.ask(utterances, USUAL_BEAM)]
+        answers = [each.about for each in self.ask(utterances, USUAL_BEAM)]
         seconds = (time.process_time() - began) / max(len(answers), 1)
         return [replace(each, seconds=seconds) for each in answers]
 
@@ -388,10 +389,9 @@ class Answerer:
             decision = Decision.ASK  # the others can be done
         return Answer(given, several, heard, readings, about, probability, decision, ())
 
-    def write(self, given: PartAnswer) -> str:
+    def write(self, answer: Answer) -> str:
         """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
-        answer = self.judge(given)
-        language = self.writer.language
+        given, language = answer.given, self.writer.language
         said = language.anonymizer.anonymize(given.utterance)
         warnings = unknown_tokens(given.utterance, language.ontology)
         if self.problem:
@@ -486,7 +486,7 @@ class Answerer:
 
     def _together(self, answer: Answer) -> dict[str, Any]:
         """Return what is said of several commands: the answer to each, and one plan of all."""
-        several = [json.loads(self.write(each)) for each in _flat(answer.given.pieces)]
+        several = [json.loads(self.write(each)) for each in answer.several]
         language = self.writer.language
         plans = [understood(each, language).task_plan for each in several]
         texts = [each["utterance"] for each in several]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.errors import Refusal
-from parser_service.serving.answerer import Answerer, NotServed, PartAnswer
+from parser_service.serving.answerer import Answer, Answerer, NotServed
 from parser_service.serving.parse_answers import as_json
 from parser_service.serving.preparing import numbered_lines, require_utterance
 
@@ -75,7 +75,7 @@ def answer_some(
     ]
 
 
-def _write(answerer: Answerer, number: int, answer: PartAnswer) -> LineAnswer:
+def _write(answerer: Answerer, number: int, answer: Answer) -> LineAnswer:
     try:
         return LineAnswer(number, answerer.write(answer))
     except Exception:
