@@ -120,7 +120,7 @@ WEIGHTS: dict[str, Weight] = {
     "left_out": Weight(-2.5, 0.7, -1),
     "exchanged": Weight(-3.0, 0.7, -1),
     "not_executable": Weight(-0.5, 0.5, -1),
-    "unknown_words": Weight(-2.0, 0.7, -1),
+    "unknown_words": Weight(-1.0, 0.7, -1),
 }
 DEFAULT_WEIGHTS = {name: weight.default for name, weight in WEIGHTS.items()}
 

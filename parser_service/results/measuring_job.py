@@ -69,7 +69,8 @@ class MeasuredAnswerer:
 
     @property
     def run(self) -> TrainingRun | None:
-        return TrainingRun.objects.filter(pk=self.answerer.run).first()
+        key = self.answerer.run
+        return None if key is None else TrainingRun.objects.get(pk=key)
 
     def answer(self, utterances: Sequence[str]) -> list[AnsweredForm]:
         return self.answerer.measure(utterances)

@@ -113,7 +113,7 @@ def test_the_default_is_near_what_such_answers_were_worth():
 
 
 @pytest.mark.parametrize(
-    "against", [{"not_said": 1}, {"left_out": 1}, {"exchanged": True}, {"unknown_words": 1}]
+    "against", [{"not_said": 1}, {"left_out": 1}, {"exchanged": True}, {"unknown_words": 2}]
 )
 @pytest.mark.parametrize("evidence", [ORACLE, LEARNED], ids=["oracle", "learned"])
 def test_what_speaks_against_a_form_costs_two_nats(evidence, against):

@@ -74,8 +74,8 @@ def test_one_sentence_is_cut_by_what_the_parser_understands(browse, parse_server
 def test_a_table_of_distances_is_used(browse):
     far = {"one": "kitchen", "other": "operator", "distance": 40.5}
     answer = browse.post(API, {"utterances": TWO, "distances": [far]}, JSON).json()
-    assert answer["joint_plan"]["length"] == 81  # there and back
-    assert (answer["joint_plan"]["length_before"], answer["joint_plan"]["unit"]) == (81, "m")
+    assert answer["joint_plan"]["length"] == 162  # twice there and back
+    assert (answer["joint_plan"]["length_before"], answer["joint_plan"]["unit"]) == (162, "m")
     in_feet = browse.post(API, {"utterances": TWO, "distances": [far], "unit": "ft"}, JSON).json()
     assert in_feet["joint_plan"]["unit"] == "ft"
 
