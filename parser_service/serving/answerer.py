@@ -135,8 +135,8 @@ class Answer:
 
     @property
     def is_unknown(self) -> bool:
-        """Whether there is nothing to act on: no form, or one that somebody did not ask for."""
-        return self.about.evidence is None or self.about.objections
+        """Whether there is nothing to act on: no form, or one that is not trusted or that nobody asked for."""
+        return self.about.evidence is None or self.decision is Decision.REFUSE
 
     @property
     def changes(self) -> tuple[HeardChange, ...]:
@@ -467,7 +467,8 @@ class Answerer:
             learned_log_probability=None if is_oracle else scores[0],
             margin=margin,
             agrees=given.agrees,
-            not_said=len(fits.not_said),
+            # What an unknown word may name was said.
+            not_said=sum(not slot.phrases for slot in fits.not_said),
             left_out=len(fits.left_out),
             exchanged=bool(fits.exchanged),
             executable=best.executable_plans > 0,
@@ -540,6 +541,8 @@ def _is_settled(answer: PartAnswer) -> bool:
 def _misfits(fits: Fit) -> Iterator[Objection]:
     """Yield what of a form does not fit what was said."""
     for slot in fits.not_said:
+        if slot.phrases:
+            continue
         noun = slot.entity_class
         yield Objection(_NOT_SAID, f"You did not say which {noun}.", 0, 0)
     for each in fits.left_out:

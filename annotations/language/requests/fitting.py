@@ -23,7 +23,7 @@ from annotations.language.forms import (
     walk,
     with_part,
 )
-from annotations.language.grounding import Anonymized, Slot, Span, are_alike
+from annotations.language.grounding import Anonymized, Slot, Span, are_alike, words_of
 from annotations.language.ontology import Ontology
 from annotations.language.requests.qualifying import says_number
 from annotations.language.requests.word_use import Place, Role, WordUse, role_at
@@ -166,10 +166,10 @@ def best_fitting(scored: Sequence[tuple[float, Fit]], within: float = 2.0) -> li
 
 
 def _fillers(slot: Slot) -> Iterator[str]:
-    """Yield what fills a slot; of a choice all that may."""
+    """Yield what fills a slot, or all that may where the utterance leaves that open."""
     if slot.filler is not None:
         yield slot.filler
-    if slot.is_choice:
+    if slot.is_choice or slot.is_ambiguous:
         yield from slot.candidates
 
 
@@ -207,8 +207,11 @@ def _entities_left_out(
 ) -> Iterator[LeftOut]:
     """Yield what names an entity that no slot has; a pose or a gesture counts where somebody is meant."""
     has_person = not PERSON_PREDICATES.isdisjoint(predicates(form))
+    is_choice = not CHOOSING_WORDS.isdisjoint(words_of(heard.text))  # "sitting, standing or lying?"
     for span in unused:
         is_word = ontology.classes.is_closed(span.entity_class)
+        if is_word and is_choice:
+            continue
         if not is_word or has_person or not use.is_of_people(span.entity_class):
             yield LeftOut(Left.ENTITY, heard.original[span.start : span.end], span.start, span.end)
 

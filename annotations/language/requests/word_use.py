@@ -76,6 +76,7 @@ _NAMES_NOTHING = frozenset(
         *LIGHT_WORDS,
         *NO_COMMAND_WORDS,
         *NUMBERS,
+        "not",
     )
 )
 

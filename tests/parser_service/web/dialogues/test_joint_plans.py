@@ -12,7 +12,7 @@ from parser_service.serving.joint_answers import commands_in
 from tests.parser_service.served import trained_run
 
 API, PAGE, JSON = "/api/v1/worlds/home/joint-plan/", "/w/home/parse/together/", "application/json"
-TWO = ["find the red cup in the kitchen", "bring me the bowl in the kitchen"]
+TWO = ["go get the red cup in the kitchen", "bring me the bowl in the kitchen"]
 
 
 @pytest.fixture
