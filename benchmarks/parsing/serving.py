@@ -119,7 +119,7 @@ def fastest(rounds: Sequence[np.ndarray]) -> np.ndarray:
 def measure(client: Any, parser: Any, utterances: Sequence[str], rounds: int) -> None:
     """Print a line for single parses and one for batches."""
     from parser_service.runs.training.evaluating import BEAM_WIDTH
-    from parser_service.serving.shelf import LINES_TOGETHER
+    from parser_service.serving.answerer import LINES_TOGETHER
 
     def bare(texts: Sequence[str]) -> None:
         parser.predict(texts, BEAM_WIDTH)

@@ -69,7 +69,8 @@ class MeasuredAnswerer:
 
     @property
     def run(self) -> TrainingRun | None:
-        return TrainingRun.objects.filter(pk=self.answerer.run).first()
+        run = self.answerer.run
+        return None if run is None else TrainingRun.objects.filter(pk=run).first()
 
     def answer(self, utterances: Sequence[str]) -> list[AnsweredForm]:
         return self.answerer.measure(utterances)

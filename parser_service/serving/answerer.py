@@ -307,7 +307,8 @@ class Answerer:
         readings = self.writer.readings(heard, given.candidates, score_kind)
         # What is no form is not shown.
         readings = [each for each in readings if each.slots is not None]
-        fits, reasons = Fit(), ()
+        fits = Fit()
+        reasons: tuple[Objection, ...] = ()
         if given.part is self.learned or not readings:
             reasons = objections(heard)
         if given.part is self.learned:
@@ -458,7 +459,8 @@ class Answerer:
         best, part = readings[0], given.part
         is_oracle = part is not None and part is self.oracle
         scores = [_log_probability(each.candidate.score, part) for each in readings[:2]]
-        margin = scores[0] - scores[1] if None not in scores and len(scores) > 1 else None
+        known = [each for each in scores if each is not None]
+        margin = known[0] - known[1] if len(known) > 1 else None
         evidence = Evidence(
             part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
             is_exact=is_oracle and not any(each.kind in _DOUBTFUL for each in best.candidate.heard),
@@ -565,8 +567,10 @@ def _sequence(readings: Sequence[Reading[str]]) -> Candidate:
     values: list[str | None] = []
     for reading in readings:
         form = _form(reading)
-        is_sequence = isinstance(form, Application) and form.predicate == SEQUENCE
-        steps += form.arguments if is_sequence else (form,)
+        if isinstance(form, Application) and form.predicate == SEQUENCE:
+            steps += form.arguments
+        else:
+            steps.append(form)
         values += [slot.filler for slot in reading.slots or () if slot.entity_class]
     return Candidate(canonical_text(Application(SEQUENCE, tuple(steps))), 0.0, values=tuple(values))
 

@@ -95,7 +95,9 @@ class ParseQuery(AskedParser, Fields):
     utterance = serializers.CharField(
         max_length=MOST_CHARACTERS, trim_whitespace=False, default="", allow_blank=True
     )
-    alternatives = AlternativeSerializer(many=True, default=list, max_length=MOST_ALTERNATIVES)
+    alternatives = serializers.ListField(
+        child=AlternativeSerializer(), default=list, max_length=MOST_ALTERNATIVES
+    )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if bool(attrs["utterance"].strip()) == bool(attrs["alternatives"]):
