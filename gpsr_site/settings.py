@@ -325,6 +325,7 @@ SPECTACULAR_SETTINGS = {
         "WorkKind": "annotations.models.queueing.work_kind_choices",
         "WorkSubjectKind": ["utterance", "template", "paraphrase"],
         "FindingSubjectKind": ["utterance", "paraphrase"],
+        "AnswerDecision": ["act", "confirm", "ask", "refuse"],
         "Encoding": "annotations.language.decoding.ENCODINGS",
     },
     "SERVE_INCLUDE_SCHEMA": False,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from functools import cached_property, lru_cache
 from itertools import islice
 from random import Random
@@ -148,11 +149,13 @@ def require_beam(beam: object) -> int:
 
 def learned_use(world: World) -> LearnedUse:
     """Return what the grammar of ``world`` tells about words and roles, kept until the world changes."""
-    return _learn(world.pk, World.objects.values_list("revision", flat=True).get(pk=world.pk))
+    # Another database, such as a restored one, may have another world with the same key and revision.
+    now = World.objects.values_list("pk", "created_at", "revision").get(pk=world.pk)
+    return _learn(*now)
 
 
 @lru_cache(maxsize=REMEMBERED_WORLDS)
-def _learn(pk: int, revision: int) -> LearnedUse:
+def _learn(pk: int, created_at: datetime, revision: int) -> LearnedUse:
     world = World.objects.get(pk=pk)
     try:
         pairs = tuple(islice(_derivations(world), MOST_COMMANDS))

@@ -84,7 +84,7 @@ def ask_and_plan(robot):
 
 
 def plan_together(robot):
-    said = ["I want to play, so bring over the chess set", "pretzel from the galley, please"]
+    said = ["bring me the chess set", "pretzel from the galley, please"]
     joint = robot.joint_plan(said)
     jsonschema.validate(joint.raw["joint_plan"], joint_plan_schema())
     assert joint.plan.is_executable and joint.length <= joint.length_before
