@@ -148,7 +148,7 @@ def exchange(
     return form, tuple(other.get(each.path, each.filler) for each in slots if each.entity_class)
 
 
-def best_fitting(scored: Sequence[tuple[float, Fit]], within: float = 2.0) -> list[int]:
+def best_fitting(scored: Sequence[tuple[float, Fit]], within: float = 3.0) -> list[int]:
     """Return the numbers of candidates in the order of how well they fit.
 
     Of those that are at most ``within`` nats below the best one, the ones without exchanged slots come first, then

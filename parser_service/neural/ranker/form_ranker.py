@@ -42,7 +42,7 @@ FORMS = "forms.json"
 SAVED = (FORMS, ENCODER, TOKENIZER, WEIGHTS)
 PREDICTION_BATCH = 64
 MOST_HEARD = 5  # forms whose slots an utterance may fill in words of its own
-NEARLY = 2.0  # nats by which a form may be less probable that leaves nothing out
+NEARLY = 3.0  # nats by which a form may be less probable that leaves nothing out
 # Nats by which an utterance that names nothing of the world has to be nearer to what was learned.
 UNNAMED = 2.0
 
