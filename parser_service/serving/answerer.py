@@ -503,8 +503,10 @@ class Answerer:
         }
 
     def _nearest(self, answer: Answer) -> list[str]:
-        """Return commands that are near an utterance that was not understood, with entities of the world."""
-        if answer.decision is not Decision.REFUSE or answer.several or answer.given.part is None:
+        """Return commands that are near an utterance that was not understood, with entities of the world; none where
+        somebody said what not to do."""
+        is_lost = answer.decision is Decision.REFUSE and not answer.about.objections
+        if not is_lost or answer.several or answer.given.part is None:
             return []
         language = self.writer.language
         near = language.near.nearest(answer.heard)

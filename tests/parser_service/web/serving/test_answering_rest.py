@@ -125,6 +125,7 @@ def test_a_prohibition_is_refused_without_a_learned_part_too(tiny, post, said):
     answer = ask(post, said)
     assert answer["decision"] == "refuse"
     assert "forbidden" in [each["code"] for each in answer["reasons"]]
+    assert answer["nearest"] == []
 
 
 def test_a_nearest_neighbour_does_not_what_is_forbidden(world, post, serve):
