@@ -14,12 +14,12 @@ from annotations.background import (
 )
 from annotations.labelling.proposal_requests import request_proposals
 from annotations.language.corpus import Part
-from parser_service.models import TrainingRun
+from parser_service.models import PromotionState, TrainingRun
 from parser_service.parsers import registry
 from parser_service.parsers.interface import Cancelled, Parser
 from parser_service.promotions.promotion_rule import consider
 from parser_service.runs import lifecycle
-from parser_service.runs.analysis_requests import request_analysis
+from parser_service.runs.analysis_requests import request_analysis, request_measurement_with
 from parser_service.runs.checkpoints import model_folder, write_folder
 from parser_service.runs.orphan_folders import keep_track_of
 from parser_service.runs.training.evaluating import evaluate
@@ -68,7 +68,9 @@ def _fit_and_evaluate(run: TrainingRun, observe: RunObserver) -> None:
     request_proposals(run.world)  # it may be the best parser now
     if not parser.asks_a_server:  # thousands of questions to it, so somebody has to want that
         request_analysis(run)
-    consider(run)
+    row = consider(run)
+    if row is not None and row.state == PromotionState.PROMOTED:
+        request_measurement_with(run)
 
 
 def make_parser(run: TrainingRun) -> Parser:

@@ -30,6 +30,7 @@ from parser_service.promotions.promoting import (
     roll_back,
 )
 from parser_service.promotions.score_evidence import compare_scores, judged_by
+from parser_service.runs.analysis_requests import request_measurement_with
 from parser_service.serving.answering import answering_parts, choose_answering, version_of
 from parser_service.serving.calibrating import calibrated
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
@@ -87,7 +88,13 @@ def promotion_promote(request: WorldRequest, world: World) -> HttpResponse:
     )
     reason = request.POST.get("reason", "")
     note(request, f"run {run.pk}")
-    return _decide(request, world, lambda: promote(run, request.user, reason))
+
+    def decide() -> Promotion:
+        row = promote(run, request.user, reason)
+        request_measurement_with(run, request.user)
+        return row
+
+    return _decide(request, world, decide)
 
 
 @world_view(Duty.MANAGE, WRITE)

@@ -19,6 +19,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldViewSet
 from parser_service.models import Promotion
 from parser_service.promotions.promoting import MOST_REASON, decline, promote, roll_back
+from parser_service.runs.analysis_requests import request_measurement_with
 
 
 class PromotionSerializer(serializers.ModelSerializer[Promotion]):
@@ -67,6 +68,7 @@ class PromotionViewSet(ListModelMixin, WorldViewSet):
         sent = self.read(NewPromotion)
         run = get_object_or_404(self.world.runs.select_related("world"), pk=sent["run"])
         row = promote(run, request.user, sent["reason"])
+        request_measurement_with(run, request.user)
         return Response(self.get_serializer(row).data, status=HTTPStatus.CREATED)
 
     @extend_schema(request=RollBackReason, responses={201: PromotionSerializer})
