@@ -269,7 +269,7 @@ class Answerer:
         given, evidence = answer.given, answer.about.evidence
         if given.pieces or self.learned is None or given.part is not self.learned:
             return answer
-        if evidence is not None and not evidence.left_out:
+        if evidence is not None and not (evidence.left_out or evidence.unknown_words):
             return answer
         pieces = pieces_of(given.utterance, self._grammar, self._judge)
         is_better = all if evidence else any
@@ -283,10 +283,19 @@ class Answerer:
         return cast("GrammarOracle | None", self.oracle.parser if self.oracle else None)
 
     def _judge(self, texts: Sequence[str]) -> list[float | None]:
-        """Return how well the learned part understands each text as one command; None for one that it does not."""
+        """Return how well the learned part understands each text as one command; None for one that it does not, or of
+        which it leaves something out."""
         assert self.learned is not None
-        best = [next(iter(each), None) for each in self.learned.ask(texts, 1)]
-        return [None if each is None or each.form == UNKNOWN else each.score for each in best]
+        answers = [
+            self.judge(PartAnswer(text, text, self.learned, candidates))
+            for text, candidates in zip(texts, self.learned.ask(texts, USUAL_BEAM), strict=True)
+        ]
+        return [
+            None
+            if (of := each.about.evidence) is None or of.left_out or of.unknown_words
+            else each.readings[0].candidate.score
+            for each in answers
+        ]
 
     def heard_nothing(self) -> Answer:
         """Return what there is to write where nothing was said: no candidate, without asking any part."""
@@ -359,7 +368,8 @@ class Answerer:
 
     def _unknown_words(self, heard: Anonymized, slots: Sequence[Slot]) -> int:
         """Return how many words nobody knows, besides those that may name what a slot asks for."""
-        asked = {word for slot in slots for phrase in slot.phrases for word in phrase.split()}
+        phrases = [each for slot in slots if slot.value is None for each in slot.phrases]
+        asked = {word for phrase in phrases for word in phrase.split()}
         found = self.stopping.in_(heard)
         texts = (heard.original[each.start : each.end].split() for each in found)
         return sum(not asked.issuperset(words) for words in texts)

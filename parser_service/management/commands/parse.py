@@ -112,7 +112,8 @@ class Command(ReportingCommand):
 
     def describe(self, report: Mapping[str, Any]) -> str:
         who = f"{report['parser']} (run {report['run']})" if report["run"] else report["parser"]
-        lines = [f"{who}: {report['parsed_text']}"]
+        lines = [f"{who}: {report['parsed_text']}", f"{report['sureness']}. {report['spoken']}"]
+        lines += [f"{each['sureness']}: {each['utterance']}" for each in report["several"]]
         for candidate in report["candidates"]:
             shown = candidate["reading"] or f"{candidate['form']}   (no well-formed form)"
             lines.append(f"{candidate['score']:8.3f}  {shown}")
@@ -125,9 +126,9 @@ class Command(ReportingCommand):
 
 
 def _say_plan(candidate: Mapping[str, Any]) -> list[str]:
-    """Return the sentence that a robot speaks, the steps of the task plan, and what is wrong with it."""
+    """Return the steps of the task plan, and what is wrong with it."""
     plan = candidate["task_plan"]
     if not plan:
         return []
     steps = [f"{each['number']:8}  {call(each)}" for each in plan["steps"]]
-    return [candidate["spoken"], *steps, *(each["message"] for each in plan["problems"])]
+    return [*steps, *(each["message"] for each in plan["problems"])]
