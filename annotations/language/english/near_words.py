@@ -78,7 +78,8 @@ _SOUNDS_OF = {
     },
 }
 _SILENT, _LONG = re.compile("[aeiouy][^aeiouy]{1,2}e$"), re.compile("[aeiouy][^aeiouy]e$")
-_PAST = re.compile("[aeiouy].*[^aeioutd]ed$")
+_PAST = re.compile("[^aeioutd]ed$")
+_VOWEL = re.compile("[aeiouy]")
 # Letters of consonants that Metaphone does not tell apart, though speakers do.
 _DENTALS = re.compile("t(?!c?h)|d(?!g)")
 _PAIRS = ("g", "ckq"), ("v", "fp")
@@ -195,7 +196,7 @@ def _vowels(word: str) -> tuple[str, ...]:
     is_long = bool(_LONG.search(word))
     if word.endswith("ing"):
         word = word[:-1]
-    elif _PAST.search(word):
+    elif _PAST.search(word) and _VOWEL.search(word[:-3]):
         word = word[:-2] + "d"
     elif _SILENT.search(word):
         word = word[:-1]

@@ -398,8 +398,10 @@ class _Cut:
         if words.first or words.last < len(self.words):
             if opening := _OPENING.match(self.utterance, start, end):
                 start = opening.end()
-            if closing := _CLOSING.search(self.utterance, start, end):
-                end = closing.start()
+            last = words.last
+            while last > words.first + 1 and self.said[last - 1] in _PARTING:
+                last -= 1
+            end = min(end, self.words[last - 1][1])
         for each in cut_at_joints(self.utterance[start:end], judge):
             yield self._piece(start + each.start, start + each.end, each.is_understood)
 
@@ -461,7 +463,6 @@ _JOINT = re.compile(
 _OPENING = re.compile(
     rf"\s*+(?:(?:{_phrases((*JOINT_OPENINGS, *JOINTS))})\b[\s,:.]*+|{_NUMBER})++", re.IGNORECASE
 )
-_CLOSING = re.compile(rf"(?:\s++(?:{_phrases(_PARTING)}))++[\s.,;:!?]*+\Z", re.IGNORECASE)
 
 
 _END = re.compile(r"[.;!?]\s+|\n+")

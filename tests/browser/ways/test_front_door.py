@@ -59,9 +59,7 @@ def test_parsers_are_chosen_by_keyboard(page_of, live_server, sample, admin):
     expect(page.locator("#parser-knn")).to_be_focused()
     wait_for_swap(page)
     page.keyboard.press("ArrowDown")
-    expect(page.locator("#chosen-title")).to_have_text(
-        "Sequence to sequence"
-    )  # linear stands on top
+    expect(page.locator("#chosen-title")).to_have_text("Linear classifier")
 
 
 def test_without_scripts_a_parser_is_chosen_by_button(browser, live_server, sample, admin):

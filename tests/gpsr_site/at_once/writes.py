@@ -126,6 +126,7 @@ NAMELESS = {
         "paraphrase-runs",
         "run-retrain",
         "run-analysis",
+        "results-measure",
         "run-cancel",
         "audit",
         "work-item-list",

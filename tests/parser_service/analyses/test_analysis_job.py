@@ -8,7 +8,7 @@ from annotations.background import Stopped
 from annotations.background.progress import UNWATCHED
 from annotations.jobs import cancel_job, request_job
 from annotations.jobs.watching import JobProgress
-from annotations.models import Job, JobKind
+from annotations.models import JobKind
 from parser_service.analyses import stored_findings as findings_module
 from parser_service.analyses.analysis_job import names_of_steps
 from parser_service.analyses.refusal_curves import refusal_findings
@@ -171,4 +171,4 @@ def test_a_run_of_another_world_is_not_analysed(train_one, other_world):
 def test_a_queued_analysis_is_cancelled_at_once(train_one):
     run = train_one("perfect")
     cancel_job(analysis_jobs(run).get())
-    assert not analysis_of(run).is_active and not Job.objects.active().exists()
+    assert not analysis_of(run).is_active and not analysis_jobs(run).active().exists()
