@@ -331,11 +331,16 @@ def decide(
     return Decision.ACT
 
 
+def percent_of(probability: float) -> int:
+    """Return a probability as people read it: nothing is certain, so 1 to 99."""
+    return min(max(round(100 * probability), 1), 99)
+
+
 def in_words(decision: str, probability: float | None) -> str:
     """Say how sure an answer is: “sure”, “77 %: shall I?”, “95 %: one question”, “unsure: 3 %”, “not understood”."""
     if probability is None:
         return "not understood"
-    percent = f"{round(100 * probability)} %"
+    percent = f"{percent_of(probability)} %"
     match decision:
         case Decision.ACT:
             return "sure"

@@ -63,6 +63,7 @@ NOT_UNDERSTOOD = "I did not understand that."
 _NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
 # Kinds of changes that make other words of what was said; the others only leave noise out.
 _DOUBTFUL = frozenset(("sound", "spelling", "inflection", "alias", "repair", "split", "number"))
+_TOO_MANY = "too_many_commands"
 _CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
 
@@ -396,9 +397,13 @@ class Answerer:
             )
         decisions = {each.decision for each in several}
         decision = next(each for each in _CAREFUL if each in decisions)
-        if decision is Decision.REFUSE:
-            decision = Decision.ASK  # the others can be done
-        return Answer(given, several, heard, readings, about, probability, decision, ())
+        reasons: tuple[Objection, ...] = ()
+        if len(several) > MOST_COMMANDS:
+            message = f"These are {len(several)} commands, and I take at most {MOST_COMMANDS} at once."
+            reasons = (Objection(_TOO_MANY, message, 0, len(given.utterance)),)
+        if decision is Decision.REFUSE or reasons:
+            decision = Decision.ASK  # others can be done
+        return Answer(given, several, heard, readings, about, probability, decision, reasons)
 
     def write(self, answer: Answer) -> str:
         """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
@@ -504,7 +509,8 @@ class Answerer:
         joint = None
         if len(plans) <= MOST_COMMANDS:
             joint = join(plans, language.recipes, utterances=texts)
-        questions = [each["spoken"] for each in several if each["decision"] != Decision.ACT]
+        questions = [each.message for each in answer.reasons]
+        questions += [each["spoken"] for each in several if each["decision"] != Decision.ACT]
         said = next(iter(questions), joint.spoken if joint else "")
         return {
             "several": several,

@@ -20,6 +20,15 @@ def heard(pieces: Iterable[HeardPiece]) -> SafeString:
     return format_html_join("", "{}", ((_mark(piece),) for piece in pieces))
 
 
+@register.filter
+def as_percent(probability: float) -> int:
+    """Show how sure an answer is, 1 to 99."""
+    # Not before a page shows one: it needs NumPy.
+    from parser_service.analysis.sureness import percent_of
+
+    return percent_of(probability)
+
+
 def _mark(piece: HeardPiece) -> SafeString | str:
     if piece.entity_class:
         return format_html(
@@ -28,7 +37,9 @@ def _mark(piece: HeardPiece) -> SafeString | str:
             piece.text,
             piece.value,
         )
-    return SafeString(" ").join(_marks_of_change(piece)) if piece.why else piece.text
+    if not piece.why:
+        return piece.text
+    return format_html_join(" ", "{}", ((mark,) for mark in _marks_of_change(piece)))
 
 
 def _marks_of_change(piece: HeardPiece) -> Iterator[SafeString]:

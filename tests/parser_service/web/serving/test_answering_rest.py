@@ -111,6 +111,16 @@ def test_several_commands_are_one_answer_with_one_plan(tiny, post):
     assert answer["probability"] == pytest.approx(one * other, abs=0.001)
 
 
+def test_of_more_commands_than_three_a_robot_asks_which(tiny, post):
+    answer = post(
+        {"utterance": "find the tea. go to the kitchen. find the tea. go to the bath"}
+    ).json()
+    assert (len(answer["several"]), answer["decision"]) == (4, "ask")
+    assert answer["joint_plan"] is None
+    assert [each["code"] for each in answer["reasons"]] == ["too_many_commands"]
+    assert answer["spoken"] == answer["reasons"][0]["message"]
+
+
 def test_a_word_that_nobody_knows_is_named_with_commands_that_are_near(tiny, post):
     answer = ask(post, "locate the tea in the flurb")
     assert (answer["decision"], answer["is_unknown"]) == ("refuse", True)
