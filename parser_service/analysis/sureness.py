@@ -24,18 +24,19 @@ from parser_service.analysis.arrays import Bools, Floats
 from parser_service.analysis.clustered import folds_of
 
 FOLDS = 5
-LEAST_PEOPLE = (
-    20  # utterances of people without which nothing that a learned parser says is acted on
-)
 FEW = 50  # examples that are too few to choose an operating point by
+LEAST_PEOPLE = (
+    FEW  # utterances of people without which nothing that a learned parser says is acted on
+)
 UNLIKELY = 0.05  # what happens less often is no chance
 LEAST_ACT = 0.5  # nothing is acted on that is rather wrong
 LEAST_CONFIRM = 0.3  # below it a person would mostly say no
-LEAST_UNCALIBRATED = 0.1  # the same where no utterance of people told what a score is worth
+LEAST_UNCALIBRATED = 0.03  # the same where no utterance of people told what a score is worth
 ALLOWED_WRONG = 0.02
 LEAST, MOST = 0.001, 0.999  # nothing that was learned from some hundred examples is surer
 _MOST_COUNTED = 3  # slots, names or words: a fourth says nothing new
-_MOST_COST, _MOST_LOG_ODDS, _MOST_MARGIN = 20.0, 6.0, 6.0
+# A network is often far surer than it is right, so that more of its own word says no more.
+_MOST_COST, _MOST_LOG_ODDS, _MOST_MARGIN = 20.0, 4.0, 3.0
 
 
 class AnsweringPart(StrEnum):
@@ -120,7 +121,7 @@ WEIGHTS: dict[str, Weight] = {
     "left_out": Weight(-2.5, 0.7, -1),
     "exchanged": Weight(-3.0, 0.7, -1),
     "not_executable": Weight(-0.5, 0.5, -1),
-    "unknown_words": Weight(-1.0, 0.7, -1),
+    "unknown_words": Weight(-2.0, 0.7, -1),
 }
 DEFAULT_WEIGHTS = {name: weight.default for name, weight in WEIGHTS.items()}
 

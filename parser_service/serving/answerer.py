@@ -331,7 +331,8 @@ class Answerer:
         decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
         if decision is Decision.REFUSE:
             reasons = (*reasons, *self.stopping.in_(heard))
-        reasons = (*reasons, *_misfits(fits))
+        if not about.objections:
+            reasons = (*reasons, *_misfits(fits))
         return Answer(given, (), heard, readings, about, probability, decision, reasons)
 
     def _fit(
@@ -399,7 +400,9 @@ class Answerer:
         decision = next(each for each in _CAREFUL if each in decisions)
         reasons: tuple[Objection, ...] = ()
         if len(several) > MOST_COMMANDS:
-            message = f"These are {len(several)} commands, and I take at most {MOST_COMMANDS} at once."
+            message = (
+                f"These are {len(several)} commands, and I take at most {MOST_COMMANDS} at once."
+            )
             reasons = (Objection(_TOO_MANY, message, 0, len(given.utterance)),)
         if decision is Decision.REFUSE or reasons:
             decision = Decision.ASK  # others can be done

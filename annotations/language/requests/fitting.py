@@ -13,7 +13,7 @@ from enum import StrEnum
 from itertools import combinations
 from math import inf
 
-from annotations.language.english import CHOOSING_WORDS
+from annotations.language.english import CHOOSING_WORDS, NEGATIONS
 from annotations.language.forms import (
     PERSON_PREDICATES,
     Constant,
@@ -44,6 +44,7 @@ class Left(StrEnum):
     ACTION = "action"
     ATTRIBUTE = "attribute"
     NUMBER = "number"
+    NEGATION = "negation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +237,11 @@ def _words_left_out(
             yield LeftOut(Left.ACTION, heard.original[start:end], start, end)
         elif not is_choice and (has_person or not all(map(use.is_of_people, named))):
             yield LeftOut(Left.ATTRIBUTE, heard.original[start:end], start, end)
+    if negation := next(
+        (place for word, place in zip(words, places, strict=True) if word in NEGATIONS), None
+    ):
+        # Whatever it denies, no form says so: "the person who is not waving".
+        yield LeftOut(Left.NEGATION, heard.original[slice(*negation)], *negation)
     if says_number(heard) and not any(
         isinstance(each, Constant) and isinstance(each.value, int) for each in walk(form)
     ):
