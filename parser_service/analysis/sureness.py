@@ -25,9 +25,7 @@ from parser_service.analysis.clustered import folds_of
 
 FOLDS = 5
 FEW = 50  # examples that are too few to choose an operating point by
-LEAST_PEOPLE = (
-    FEW  # utterances of people without which nothing that a learned parser says is acted on
-)
+LEAST_PEOPLE = 40  # utterances without which no answer of a learned parser is acted on
 UNLIKELY = 0.05  # what happens less often is no chance
 LEAST_ACT = 0.5  # nothing is acted on that is rather wrong
 LEAST_CONFIRM = 0.3  # below it a person would mostly say no
