@@ -26,9 +26,10 @@ from annotations.language.grounding.questions import (
     open_slots_as_json,
     question_for,
 )
-from annotations.language.grounding.role_evidence import Evidence, as_pair
+from annotations.language.grounding.role_evidence import Evidence, RoleCounts, as_pair
 from annotations.language.grounding.roles import (
     SlotPath,
+    SlotRole,
     class_of,
     context_of,
     role_of,
@@ -54,8 +55,10 @@ __all__ = [
     "HeardLattice",
     "HeardText",
     "HearingReader",
+    "RoleCounts",
     "Slot",
     "SlotPath",
+    "SlotRole",
     "Span",
     "UtteranceMentions",
     "UtteranceReader",

@@ -46,6 +46,32 @@ _NO_COUNTS: Mapping[str, int] = {}
 _NO_ORDERS: Mapping[tuple[int, ...], int] = {}
 
 
+class RoleCounts:
+    """How often mentions of each role have which values of a feature."""
+
+    def __init__(self) -> None:
+        self._by_role: defaultdict[str, Counter[str]] = defaultdict(Counter)
+        self._all: Counter[str] = Counter()
+
+    def add(self, features: Mapping[str, str], role: SlotRole) -> None:
+        """Count a mention of this role."""
+        seen = [*features, *(f"{name} {value}" for name, value in features.items())]
+        for counts in (self._by_role[role.exact], self._by_role[role.similar], self._all):
+            counts.update(seen)
+
+    def log_odds(self, feature: str, value: str, role: SlotRole) -> float:
+        """Return how much more often than any mention one of this role has this value; 0 for a new value."""
+        both = f"{feature} {value}"
+        if both not in self._all:
+            return 0.0
+        anywhere = (self._all[both] + 1) / (self._all[feature] + _FEATURE_VALUES)
+        share = anywhere
+        for name, weight in ((role.similar, _FROM_NOWHERE), (role.exact, _FROM_SIMILAR)):
+            counts = self._by_role.get(name, _NO_COUNTS)
+            share = (counts.get(both, 0) + weight * share) / (counts.get(feature, 0) + weight)
+        return math.log(share / anywhere)
+
+
 class Evidence:
     """Scores mentions for roles, from built-in samples of English and from the pairs of a grammar.
 
@@ -54,8 +80,7 @@ class Evidence:
     """
 
     def __init__(self, derivations: Iterable[tuple[Symbols, Form]] = ()) -> None:
-        self._by_role: defaultdict[str, Counter[str]] = defaultdict(Counter)
-        self._all: Counter[str] = Counter()
+        self._counts = RoleCounts()
         self._orders: defaultdict[tuple[str, str, int], Counter[tuple[int, ...]]]
         self._orders = defaultdict(Counter)
         self._with_or: set[tuple[str, str]] = set()
@@ -67,7 +92,8 @@ class Evidence:
 
     def score(self, context: Context, role: SlotRole) -> float:
         """Return the log odds that a mention in this context fills a slot of this role."""
-        return self._gain("cue", context.cue, role) + self._gain("near", context.neighbour, role)
+        cue = self._counts.log_odds("cue", context.cue, role)
+        return cue + self._counts.log_odds("near", context.neighbour, role)
 
     def fit(self, entities: Sequence[Entity], role: SlotRole) -> float:
         """Return a penalty if the grammar never has an entity of such a kind in this role."""
@@ -88,17 +114,6 @@ class Evidence:
         """Return whether a command of this form says "or" beside several values of a class."""
         return (form, entity_class) in self._with_or
 
-    def _gain(self, feature: str, value: str, role: SlotRole) -> float:
-        both = f"{feature} {value}"
-        if both not in self._all:
-            return 0.0  # no pair has it, so it tells nothing
-        anywhere = (self._all[both] + 1) / (self._all[feature] + _FEATURE_VALUES)
-        share = anywhere
-        for name, weight in ((role.similar, _FROM_NOWHERE), (role.exact, _FROM_SIMILAR)):
-            counts = self._by_role.get(name, _NO_COUNTS)
-            share = (counts.get(both, 0) + weight * share) / (counts.get(feature, 0) + weight)
-        return math.log(share / anywhere)
-
     def _learn_derivation(self, symbols: Symbols, form: Form) -> None:
         for path, wildcard in wildcards_of(form):
             if not wildcard.obfuscated:
@@ -112,9 +127,7 @@ class Evidence:
         for path, token in slots:
             by_class[class_of(token)].append(token)
             context = context_of(words, words.index(token))
-            role = role_of(form, path)
-            for counts in (self._by_role[role.exact], self._by_role[role.similar], self._all):
-                counts.update(("cue", "near", f"cue {context.cue}", f"near {context.neighbour}"))
+            self._counts.add({"cue": context.cue, "near": context.neighbour}, role_of(form, path))
         plain = canonical_text(_plain(form)) if by_class else ""
         for entity_class, tokens in by_class.items():
             mentioned = [word for word in dict.fromkeys(words) if class_of(word) == entity_class]

@@ -2,8 +2,8 @@
 
 Learned from derivations, which say for each command which words it has and which mention fills which slot. A word that
 always goes with a predicate, or with one of a few, names it: "escort" is ``guide``, "smallest" is ``smallest``. What
-stands before a mention tells its role: the preposition, the kind of thing named last, and the action named last (naive
-Bayes with two levels of additive smoothing, as ``role_evidence``).
+stands before a mention tells its role (``RoleCounts``): the preposition, the kind of thing named last, and the action
+named last.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ from annotations.language.forms import (
     read_form,
 )
 from annotations.language.grounding import (
+    RoleCounts,
     SlotPath,
+    SlotRole,
     are_alike,
     as_pair,
     class_of,
@@ -60,8 +62,6 @@ _REWORDINGS = 2  # of each form
 _FEWEST = 3  # commands with a word, before it names anything
 _MOST_MEANINGS = 3  # predicates of which a word names one
 _MOST_COMMON = 0.75  # share of all commands with a predicate, from which on no word names it
-_FROM_SIMILAR, _FROM_NOWHERE = 2.0, 1.0  # pairs that less exact knowledge counts for
-_FEATURE_VALUES = 60
 # Log odds below which what a language never says tells no more: people say it otherwise.
 _LEAST = {"cue": -5.0, "near": -2.0, "action": -2.0}
 _MOST_BY_ORDER = 1.5  # log odds: people put parts of a command in any order
@@ -91,13 +91,16 @@ class Place:
     action: str
     number: int
 
+    @property
+    def features(self) -> dict[str, str]:
+        """What tells the role of the mention, by name."""
+        return {"cue": self.cue, "near": self.neighbour, "action": self.action}
+
 
 @dataclass(frozen=True, slots=True)
-class Role:
-    """The way to a slot: ``whole``, from its action on, and by the last predicate alone."""
+class Role(SlotRole):
+    """The way to a slot: ``exact`` from its action on, whichever step that is; ``whole`` with the step."""
 
-    exact: str
-    similar: str
     whole: str = field(default="", compare=False)
 
 
@@ -117,8 +120,7 @@ class WordUse:
         self._actions = frozenset(name for name, each in declared.items() if each.is_action)
         self._named = _meanings(pairs, declared)
         self.vocabulary = frozenset(word for words, _ in pairs for word in words)
-        self._by_role: defaultdict[str, Counter[str]] = defaultdict(Counter)
-        self._all: Counter[str] = Counter()
+        self._counts = RoleCounts()
         self._orders: Counter[tuple[str, str]] = Counter()
         self._roles_of: defaultdict[str, set[tuple[Role, str]]] = defaultdict(set)
         self._without_person: set[str] = set()  # predicates and classes
@@ -166,10 +168,13 @@ class WordUse:
 
     def score(self, place: Place, role: Role, whichever_action: bool = False) -> float:
         """Return the log odds that a mention in this place has this role; ``whichever_action`` is named before it."""
-        said = {"cue": place.cue, "near": place.neighbour}
-        if not whichever_action:
-            said["action"] = place.action
-        return sum(max(_LEAST[name], self._gain(name, value, role)) for name, value in said.items())
+        features = place.features
+        if whichever_action:
+            del features["action"]
+        return sum(
+            max(_LEAST[name], self._counts.log_odds(name, value, role))
+            for name, value in features.items()
+        )
 
     def order(self, first: Role, second: Role) -> float:
         """Return the log odds that what has the ``first`` role is named before what has the second."""
@@ -207,29 +212,10 @@ class WordUse:
             place = places[words.index(token)]
             assert place is not None
             self._roles_of[_action_of(role)].add((role, class_of(token)))
-            for counts in (self._by_role[role.exact], self._by_role[role.similar], self._all):
-                counts.update(
-                    (
-                        *("cue", "near", "action"),
-                        f"cue {place.cue}",
-                        f"near {place.neighbour}",
-                        f"action {place.action}",
-                    )
-                )
+            self._counts.add(place.features, role)
         said = [roles[word] for word in dict.fromkeys(words) if word in roles]
         for at, first in enumerate(said):
             self._orders.update((first.whole, second.whole) for second in said[at + 1 :])
-
-    def _gain(self, feature: str, value: str, role: Role) -> float:
-        both = f"{feature} {value}"
-        if both not in self._all:
-            return 0.0  # no pair has it, so it tells nothing
-        anywhere = (self._all[both] + 1) / (self._all[feature] + _FEATURE_VALUES)
-        share = anywhere
-        for name, weight in ((role.similar, _FROM_NOWHERE), (role.exact, _FROM_SIMILAR)):
-            counts = self._by_role.get(name, Counter())
-            share = (counts[both] + weight * share) / (counts[feature] + weight)
-        return math.log(share / anywhere)
 
 
 def role_at(form: Form, path: SlotPath) -> Role:
