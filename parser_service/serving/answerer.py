@@ -513,6 +513,9 @@ class Answerer:
         if len(plans) <= MOST_COMMANDS:
             joint = join(plans, language.recipes, utterances=texts)
         questions = [each.message for each in answer.reasons]
+        if answer.decision is Decision.CONFIRM:  # a yes is to all of them
+            every = [each["candidates"][0]["english"] for each in several]
+            questions.append(shall_i(", then ".join(every)))
         questions += [each["spoken"] for each in several if each["decision"] != Decision.ACT]
         said = next(iter(questions), joint.spoken if joint else "")
         return {

@@ -111,6 +111,14 @@ def test_several_commands_are_one_answer_with_one_plan(tiny, post):
     assert answer["probability"] == pytest.approx(one * other, abs=0.001)
 
 
+def test_a_robot_that_is_unsure_of_one_command_repeats_all_of_them(tiny, post):
+    answer = ask(post, "find the tea. go to the kichen")
+    decisions = [each["decision"] for each in answer["several"]]
+    assert (answer["decision"], decisions) == ("confirm", ["act", "confirm"])
+    for each in answer["several"]:
+        assert each["candidates"][0]["english"] in answer["spoken"]
+
+
 def test_of_more_commands_than_three_a_robot_asks_which(tiny, post):
     answer = post(
         {"utterance": "find the tea. go to the kitchen. find the tea. go to the bath"}
