@@ -47,7 +47,7 @@ class Gaps:
     def unresolved(self, steps: Sequence[Step]) -> Iterator[Unresolved]:
         """Yield the steps that wait for something, in order. A step waits for its own gaps, and for those of what it
         refers to."""
-        of_step = {number: (gap,) for number, gap in self.asked.items()}
+        of_step: dict[int, tuple[OpenArgument, ...]] = {n: (gap,) for n, gap in self.asked.items()}
         for step in steps:
             gap = self.asked.get(step.number)
             if gap is not None:

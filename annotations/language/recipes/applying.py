@@ -14,6 +14,7 @@ from annotations.language.plans import (
     Referred,
     Step,
     StepResult,
+    TaskValue,
     Value,
     Words,
 )
@@ -39,7 +40,7 @@ from annotations.language.recipes.task_plan import (
     TaskPlan,
     TaskProblem,
 )
-from annotations.language.recipes.values import TaskValue, kinds_of, renumbered, with_results
+from annotations.language.recipes.values import kinds_of, renumbered, with_results
 
 _CURRENT = Words("current")
 
@@ -86,8 +87,8 @@ class _Applier:
                 self._apply(step, fits[step.number])
         steps = with_texts(self._situation.steps, step_texts(self._situation.steps))
         of_source: dict[int, list[int]] = {}
-        for step in steps:
-            of_source.setdefault(step.source, []).append(step.number)
+        for done in steps:
+            of_source.setdefault(done.source, []).append(done.number)
         of_plan = (
             TaskProblem.of_plan(each, of_source.get(each.step, [0])[0])
             for each in self._plan.problems

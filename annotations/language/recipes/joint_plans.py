@@ -29,6 +29,7 @@ from annotations.language.plans import (
     ASK,
     Named,
     Operator,
+    TaskValue,
     Trouble,
     Unresolved,
     Words,
@@ -56,7 +57,7 @@ from annotations.language.recipes.task_plan import (
     TaskStep,
     task_plan_schema,
 )
-from annotations.language.recipes.values import TaskValue, ids_in, renumbered, with_results
+from annotations.language.recipes.values import ids_in, renumbered, with_results
 
 MOST_COMMANDS = 3
 MOST_STATES = 20_000  # about half a second; longer commands are done one after the other

@@ -57,7 +57,9 @@ def require_each_once(plan: Plan) -> tuple[list[int], list[int]]:
 
 
 @given(st.lists(st.sampled_from([*GROUNDED[:-1], *OPEN]), min_size=1, max_size=8))
-def test_steps_and_unresolved_ones_are_all_parts_of_a_command_once_and_in_order(parts):
+def test_steps_and_unresolved_ones_are_all_parts_of_a_command_once_and_in_order(
+    parts: list[str],
+) -> None:
     plan = plan_of(read_form(f"(sequence {' '.join(parts)})"))
     ready, waiting = require_each_once(plan)
     # What is counted is a step of its own before the one that tells it.
@@ -75,11 +77,11 @@ def test_steps_and_unresolved_ones_are_all_parts_of_a_command_once_and_in_order(
 
 
 @given(forms())
-def test_every_form_is_covered(form):
+def test_every_form_is_covered(form: Form) -> None:
     require_each_once(plan_of(form))
 
 
-def test_the_known_part_of_an_open_step_is_kept():
+def test_the_known_part_of_an_open_step_is_kept() -> None:
     plan, _ = heard(
         '(bring (λ$1:e (is_a $1 "<object>") (at $1 "<location>")))',
         "bring me the flurb from the stool",
@@ -92,13 +94,13 @@ def test_the_known_part_of_an_open_step_is_kept():
     assert (gap["argument"], gap["entity_class"], gap["likely"]) == ("thing", "object", None)
 
 
-def test_each_of_two_gaps_has_its_own_words():
+def test_each_of_two_gaps_has_its_own_words() -> None:
     plan, _ = heard('(put (λ$1:e (is_a $1 "<object>")) "<location>")', "put the flurb on the glim")
     (waiting,) = plan.unresolved
     assert [[each.text for each in gap.words] for gap in waiting.open] == [["flurb"], ["glim"]]
 
 
-def test_what_refers_to_an_open_step_waits_for_the_same_answer():
+def test_what_refers_to_an_open_step_waits_for_the_same_answer() -> None:
     plan, _ = heard(
         '(sequence (take (λ$1:e (is_a $1 "<object>"))) (go "<room>") (put it "stool"))',
         "take the flurb, go to the attic and put it on the stool",
@@ -111,13 +113,13 @@ def test_what_refers_to_an_open_step_waits_for_the_same_answer():
     assert sum(each.predicate == ASK for each in plan.steps) == 1
 
 
-def test_it_that_stands_for_what_nobody_named_is_asked_once():
+def test_it_that_stands_for_what_nobody_named_is_asked_once() -> None:
     plan = plan_of(read_form('(sequence (bring UNKNOWN) (put it "stool"))'))
     assert sum(each.predicate == ASK for each in plan.steps) == 1
     assert [each.predicate for each in plan.unresolved] == ["bring", "put"]
 
 
-def test_a_guess_is_not_known():
+def test_a_guess_is_not_known() -> None:
     plan, given = heard('(bring (λ$1:e (is_a $1 "<object>")))', "bring me the tea or the knife")
     (waiting,) = plan.unresolved
     (gap,) = waiting.open
@@ -131,7 +133,7 @@ def test_a_guess_is_not_known():
 
 
 @pytest.mark.parametrize("form", ["UNKNOWN", "(sequence UNKNOWN)"])
-def test_a_command_of_which_nothing_is_understood_waits_with_all_its_words(form):
+def test_a_command_of_which_nothing_is_understood_waits_with_all_its_words(form: str) -> None:
     plan = plan_of(read_form(form), "wibble wobble")
     (waiting,) = plan.unresolved
     (gap,) = waiting.open
@@ -151,19 +153,19 @@ def test_a_command_of_which_nothing_is_understood_waits_with_all_its_words(form)
         ("UNKNOWN", "wibble wobble"),
     ],
 )
-def test_the_plan_asks_what_the_dialogue_asks(form, utterance):
+def test_the_plan_asks_what_the_dialogue_asks(form: str, utterance: str) -> None:
     plan, _ = heard(form, utterance)
     manager = DialogueManager(HOME, {})
     state = manager.begin(read_form(form), manager.anonymizer.anonymize(utterance))
     assert state.prompt.startswith(plan.unresolved[0].open[0].question)
 
 
-def test_words_are_found_where_they_stand_alone():
+def test_words_are_found_where_they_stand_alone() -> None:
     (said, missing) = said_words(["red flurb", "tea"], "the steak, the Red  flurb")
     assert (said.start, said.end, missing.start) == (15, 25, None)
 
 
-def test_a_joint_plan_has_the_open_steps_of_each_command_with_its_own_numbers():
+def test_a_joint_plan_has_the_open_steps_of_each_command_with_its_own_numbers() -> None:
     plans = []
     for form, utterance in (
         ('(sequence (go "attic") (put (λ$1:e (is_a $1 "tea")) "<location>"))', "go and put it"),
