@@ -63,6 +63,7 @@ NOT_UNDERSTOOD = "I did not understand that."
 _NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
 # Kinds of changes that make other words of what was said; the others only leave noise out.
 _DOUBTFUL = frozenset(("sound", "spelling", "inflection", "alias", "repair", "split", "number"))
+_COURTESY = "courtesy"  # makes nobody less sure
 _TOO_MANY = "too_many_commands"
 _CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
@@ -481,7 +482,9 @@ class Answerer:
         evidence = Evidence(
             part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
             is_exact=is_oracle and not any(each.kind in _DOUBTFUL for each in best.candidate.heard),
-            heard_cost=float(len(best.candidate.heard)) if is_oracle else 0.0,
+            heard_cost=float(sum(each.kind != _COURTESY for each in best.candidate.heard))
+            if is_oracle
+            else 0.0,
             readings=sum(each.candidate.score == best.candidate.score for each in readings),
             learned_log_probability=None if is_oracle else scores[0],
             margin=known[0] - known[1] if len(known) > 1 else None,
