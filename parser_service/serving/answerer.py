@@ -43,7 +43,7 @@ from parser_service.parsers.several import pieces_of
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.calibrating import Calibrated
-from parser_service.serving.joint_answers import understood
+from parser_service.serving.joint_answers import understand
 from parser_service.serving.parse_answers import (
     ParsedUtterance,
     Reading,
@@ -510,7 +510,7 @@ class Answerer:
         """Return what is said of several commands: the answer to each, and one plan of all."""
         several = [json.loads(self.write(each)) for each in answer.several]
         language = self.writer.language
-        plans = [understood(each, language).task_plan for each in several]
+        plans = [each.task_plan for each in understand(several, language)]
         texts = [each["utterance"] for each in several]
         joint = None
         if len(plans) <= MOST_COMMANDS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ from annotations.language.recipes import (
     Distances,
     JointPlan,
     TaskPlan,
+    TaskValue,
     TooManyCommands,
     join,
     spoken,
@@ -105,13 +106,28 @@ def plan_together(
     _require_few(texts)
     language = WorldLanguage.of(world)
     ask = client()
-    commands = tuple(understood(ask.parse(world.name, text, run=run), language) for text in texts)
+    commands = understand((ask.parse(world.name, text, run=run) for text in texts), language)
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances, texts))
 
 
-def understood(answer: Mapping[str, Any], language: WorldLanguage) -> UnderstoodCommand:
-    """Return a command from the JSON of its answer."""
+def understand(
+    answers: Iterable[Mapping[str, Any]], language: WorldLanguage
+) -> tuple[UnderstoodCommand, ...]:
+    """Return commands from the JSON of their answers, in the order in which they were said.
+
+    After "go to the bedroom" a command that looks for something without a place looks there.
+    """
+    commands: list[UnderstoodCommand] = []
+    for answer in answers:
+        sent_to = commands[-1].task_plan.sends_to if commands else None
+        commands.append(_understand(answer, language, sent_to))
+    return tuple(commands)
+
+
+def _understand(
+    answer: Mapping[str, Any], language: WorldLanguage, sent_to: TaskValue | None
+) -> UnderstoodCommand:
     best = next(iter(answer["candidates"]), None)
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
@@ -142,7 +158,7 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language, slots=slots),
+        task_plan_of(form, doubts, language, slots=slots, sent_to=sent_to),
         answer["decision"],
         answer["sureness"],
         answer["probability"],

@@ -29,7 +29,7 @@ from annotations.language.grounding import (
 from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup, PlanProblem, make_plan
 from annotations.language.predicates import gloss
-from annotations.language.recipes import TaskPlan, apply_recipes, spoken
+from annotations.language.recipes import TaskPlan, TaskValue, apply_recipes, spoken
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.preparing import WorldLanguage
 
@@ -268,6 +268,7 @@ def task_plan_of(
     language: WorldLanguage,
     lookup: Lookup | None = None,
     slots: Sequence[Slot] = (),
+    sent_to: TaskValue | None = None,
 ) -> TaskPlan:
     """Return what the robot of the world does for a form with entities, in its own primitives.
 
@@ -275,6 +276,7 @@ def task_plan_of(
         doubts: the problems of entities that are only likely, where ``slots`` do not have them.
         lookup: finds the entities; that of the language by default.
         slots: those of the form, so that the plan asks for the open ones as a dialogue does.
+        sent_to: where the command before has sent the robot.
     """
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
     plan = make_plan(
@@ -285,7 +287,7 @@ def task_plan_of(
         lookup=lookup or language.lookup,
     )
     plan = replace(plan, problems=(*doubts, *plan.problems))
-    return apply_recipes(plan, language.recipes, language.usual)
+    return apply_recipes(plan, language.recipes, language.usual, sent_to)
 
 
 def as_json(value: object) -> str:

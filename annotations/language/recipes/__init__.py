@@ -47,6 +47,7 @@ from annotations.language.recipes.task_plan import (
     task_plan_schema,
     task_plan_schema_text,
 )
+from annotations.language.recipes.values import TaskValue
 
 __all__ = [
     "AFTER_COMMANDS",
@@ -71,6 +72,7 @@ __all__ = [
     "TaskPlan",
     "TaskProblem",
     "TaskStep",
+    "TaskValue",
     "TooManyCommands",
     "UsualPlaces",
     "WrongDistance",
