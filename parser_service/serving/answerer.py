@@ -353,7 +353,7 @@ class Answerer:
         scored = [(0.0 if of is None else of, fit) for of, fit in zip(scores, fits, strict=True)]
         order = best_fitting(scored) if None not in scores else list(range(len(known)))
         ordered, best = [known[at] for at in order] + others, fits[order[0]]
-        pair = next((each for each in best.exchanged if len(each.slots) == 2), None)
+        pair = next((each for each in best.exchanged if each.is_possible), None)
         if pair is not None:
             first = ordered[0]
             form, values = exchange(_form(first), first.slots or (), pair)
@@ -504,6 +504,10 @@ class Answerer:
             if is_oracle and each.candidate.score == best.candidate.score and each.candidate.heard
         }
         is_ambiguous = len(rivals) > 1 and not given.agrees
+        # "Put the desk on the apple": it cannot be meant as it was said.
+        is_ambiguous |= any(
+            len(each.slots) == 2 and not each.is_possible for each in fits.exchanged
+        )
         return AnsweredForm(best.candidate.form, evidence, is_open, ambiguous=is_ambiguous)
 
     def _together(self, answer: Answer) -> dict[str, Any]:
