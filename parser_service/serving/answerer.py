@@ -43,7 +43,7 @@ from parser_service.parsers.several import pieces_of
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.batching import Batcher
 from parser_service.serving.calibrating import Calibrated
-from parser_service.serving.joint_answers import understood
+from parser_service.serving.joint_answers import understand
 from parser_service.serving.parse_answers import (
     ParsedUtterance,
     Reading,
@@ -63,6 +63,7 @@ NOT_UNDERSTOOD = "I did not understand that."
 _NOT_SAID, _LEFT_OUT, _ROLES = _OF_FIT = ("not_said", "left_out", "roles")
 # Kinds of changes that make other words of what was said; the others only leave noise out.
 _DOUBTFUL = frozenset(("sound", "spelling", "inflection", "alias", "repair", "split", "number"))
+_COURTESY = "courtesy"  # makes nobody less sure
 _TOO_MANY = "too_many_commands"
 _CAREFUL = (Decision.REFUSE, Decision.ASK, Decision.CONFIRM, Decision.ACT)
 LEAST_LOG = -700.0  # of a probability that is 0
@@ -360,7 +361,7 @@ class Answerer:
         scored = [(0.0 if of is None else of, fit) for of, fit in zip(scores, fits, strict=True)]
         order = best_fitting(scored) if None not in scores else list(range(len(known)))
         ordered, best = [known[at] for at in order] + others, fits[order[0]]
-        pair = next((each for each in best.exchanged if len(each.slots) == 2), None)
+        pair = next((each for each in best.exchanged if each.is_possible), None)
         if pair is not None:
             first = ordered[0]
             form, values = exchange(_form(first), first.slots or (), pair)
@@ -489,7 +490,9 @@ class Answerer:
         evidence = Evidence(
             part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
             is_exact=is_oracle and not any(each.kind in _DOUBTFUL for each in best.candidate.heard),
-            heard_cost=float(len(best.candidate.heard)) if is_oracle else 0.0,
+            heard_cost=float(sum(each.kind != _COURTESY for each in best.candidate.heard))
+            if is_oracle
+            else 0.0,
             readings=sum(each.candidate.score == best.candidate.score for each in readings),
             learned_log_probability=None if is_oracle else scores[0],
             margin=known[0] - known[1] if len(known) > 1 else None,
@@ -509,13 +512,17 @@ class Answerer:
             if is_oracle and each.candidate.score == best.candidate.score and each.candidate.heard
         }
         is_ambiguous = len(rivals) > 1 and not given.agrees
+        # "Put the desk on the apple": it cannot be meant as it was said.
+        is_ambiguous |= any(
+            len(each.slots) == 2 and not each.is_possible for each in fits.exchanged
+        )
         return AnsweredForm(best.candidate.form, evidence, is_open, ambiguous=is_ambiguous)
 
     def _together(self, answer: Answer) -> dict[str, Any]:
         """Return what is said of several commands: the answer to each, and one plan of all."""
         several = [json.loads(self.write(each)) for each in answer.several]
         language = self.writer.language
-        plans = [understood(each, language).task_plan for each in several]
+        plans = [each.task_plan for each in understand(several, language)]
         texts = [each["utterance"] for each in several]
         joint = None
         if len(plans) <= MOST_COMMANDS:

@@ -27,7 +27,7 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, make_plan
+from annotations.language.plans import Lookup, TaskValue, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, apply_recipes, spoken
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
@@ -278,6 +278,7 @@ def task_plan_of(
     slots: Sequence[Slot] = (),
     utterance: str = "",
     lookup: Lookup | None = None,
+    sent_to: TaskValue | None = None,
 ) -> TaskPlan:
     """Return what the robot of the world does for a form with entities, in its own primitives.
 
@@ -285,6 +286,7 @@ def task_plan_of(
         slots: those of the form, so that the plan asks for the open ones as a dialogue does.
         utterance: what was said.
         lookup: finds the entities; that of the language by default.
+        sent_to: where the command before has sent the robot.
     """
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
     plan = make_plan(
@@ -295,7 +297,7 @@ def task_plan_of(
         lookup=lookup or language.lookup,
         utterance=utterance,
     )
-    return apply_recipes(plan, language.recipes, language.usual)
+    return apply_recipes(plan, language.recipes, language.usual, sent_to)
 
 
 def as_json(value: object) -> str:

@@ -17,6 +17,7 @@ from annotations.language.grounding.deanonymizer import (
 )
 from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
+from annotations.language.grounding.heard_changes import HeardChange, applied
 from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
     NOT_UNDERSTOOD,
@@ -37,11 +38,7 @@ from annotations.language.grounding.roles import (
     tokens_of,
     words_of,
 )
-from annotations.language.grounding.utterance_lattice import (
-    HeardChange,
-    HeardLattice,
-    UtteranceReader,
-)
+from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
 from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
@@ -64,6 +61,7 @@ __all__ = [
     "Span",
     "UtteranceMentions",
     "UtteranceReader",
+    "applied",
     "are_alike",
     "as_pair",
     "choices_of",

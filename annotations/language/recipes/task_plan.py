@@ -101,7 +101,13 @@ class TaskStep:
 
 @dataclass(frozen=True, slots=True)
 class TaskPlan(PlanOf[TaskStep, TaskProblem]):
-    """The primitives of a robot; its data follow ``task_plan_schema``."""
+    """The primitives of a robot; its data follow ``task_plan_schema``.
+
+    ``sends_to`` is the place to go to with which the command ends: a command after it that looks for something
+    looks there. None where it ends with something else.
+    """
+
+    sends_to: TaskValue | None = field(default=None, compare=False)
 
 
 @cache
