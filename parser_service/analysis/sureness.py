@@ -42,6 +42,7 @@ class AnsweringPart(StrEnum):
 
     ORACLE = "oracle"
     LEARNED = "learned"
+    LAST = "last"
 
 
 class Decision(StrEnum):
@@ -58,10 +59,9 @@ class Evidence:
     """What speaks for and against one answer.
 
     Of the oracle: ``is_exact``: it understood the words that were said, whatever noise is around them; ``heard_cost``:
-    how many changes were made to hear it so; ``readings``: how many are equally good. Of the learned parser: the
-    ``learned_log_probability`` of its answer, None where its scores are none, and by how many nats it is above the
-    second
-    (``margin``). ``agrees``: the other part gives the same form; None where it was not asked or is silent.
+    how many changes were made to hear it so; ``readings``: how many are equally good. Of the learned and the last part:
+    the ``learned_log_probability`` of its answer, None where its scores are none, and by how many nats it is above the
+    second (``margin``). ``agrees``: the other part gives the same form; None where it was not asked or is silent.
 
     Of either: how many slots nothing in the utterance names (``not_said``), how many named things the form has not
     (``left_out``), whether two slots are ``exchanged``, whether a robot can carry it out, and how many words nobody
@@ -83,7 +83,7 @@ class Evidence:
 
     @property
     def is_learned(self) -> bool:
-        return self.part == AnsweringPart.LEARNED
+        return self.part != AnsweringPart.ORACLE
 
     @property
     def raw_probability(self) -> float:
@@ -107,6 +107,7 @@ class Weight(NamedTuple):
 WEIGHTS: dict[str, Weight] = {
     "oracle": Weight(4.5, 0.4),
     "learned": Weight(-0.3, 1.0),
+    "last": Weight(-0.5, 1.0, -1),
     "heard_otherwise": Weight(-1.8, 0.7, -1),
     "heard_cost": Weight(-0.1, 0.05, -1),
     "more_readings": Weight(-1.0, 0.5, -1),
@@ -131,6 +132,7 @@ def _features(evidence: Evidence) -> list[float]:
     values: dict[str, float] = {
         "oracle": is_oracle,
         "learned": is_learned,
+        "last": evidence.part == AnsweringPart.LAST,
         "heard_otherwise": is_oracle and not evidence.is_exact,
         "heard_cost": min(evidence.heard_cost, _MOST_COST) if is_oracle else 0.0,
         "more_readings": log2(max(evidence.readings, 1)) if is_oracle else 0.0,
@@ -163,10 +165,12 @@ def _share(log_odds: ArrayLike) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Turns evidence into a probability. ``examples`` is how many it was fitted to."""
+    """Turns evidence into a probability. ``examples`` is how many it was fitted to, ``last_examples`` how many of them
+    the last part answered."""
 
     weights: Mapping[str, float] = field(default_factory=lambda: dict(DEFAULT_WEIGHTS))
     examples: int = 0
+    last_examples: int = 0
 
     @classmethod
     def fit(cls, evidences: Sequence[Evidence], is_right: Sequence[bool]) -> Self:
@@ -200,17 +204,28 @@ class Calibration:
             negative_log_posterior, default, jac=True, method="L-BFGS-B", bounds=bounds
         )
         weights = dict(zip(WEIGHTS, map(float, search.x), strict=True))
-        return cls(weights, len(evidences))
+        of_last = sum(each.part == AnsweringPart.LAST for each in evidences)
+        return cls(weights, len(evidences), of_last)
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> Self:
         """Read what ``to_json`` returned. A weight of an older version that is missing is the default."""
         stored = values.get("weights", {})
         weights = {name: float(stored.get(name, usual)) for name, usual in DEFAULT_WEIGHTS.items()}
-        return cls(weights, int(values.get("examples", 0)))
+        return cls(weights, int(values.get("examples", 0)), int(values.get("last_examples", 0)))
 
     def to_json(self) -> dict[str, Any]:
-        return {"weights": dict(self.weights), "examples": self.examples}
+        return {
+            "weights": dict(self.weights),
+            "examples": self.examples,
+            "last_examples": self.last_examples,
+        }
+
+    def has_people(self, part: str) -> bool:
+        """Return whether enough utterances of people were answered to act on what a learned part says; of the last
+        part, enough that it answered itself."""
+        of_part = self.last_examples if part == AnsweringPart.LAST else self.examples
+        return of_part >= LEAST_PEOPLE
 
     def probability(self, evidence: Evidence) -> float:
         """Return how probable it is that the answer has the plan that was meant, ``LEAST`` to ``MOST``."""
@@ -366,14 +381,14 @@ class AnsweredForm:
     seconds: float = 0.0
 
     def decision(
-        self, probability: float | None, point: OperatingPoint, has_people: bool
+        self, probability: float | None, point: OperatingPoint, calibration: Calibration
     ) -> Decision:
         """Return the decision at ``point``. A ``probability`` without evidence is none."""
         return decide(
             probability if self.evidence else None,
             point,
             is_learned=bool(self.evidence and self.evidence.is_learned),
-            has_people=has_people,
+            has_people=bool(self.evidence and calibration.has_people(self.evidence.part)),
             open_slots=self.open_slots,
             executable=bool(self.evidence and self.evidence.executable),
             objections=self.objections,

@@ -33,6 +33,7 @@ class Answering(models.Model):
     """The choices of one world. A world without a row has the defaults (``answering_of``).
 
     ``allowed_wrong`` is the share of wrong ones that is allowed among what is acted on, a fraction of 1.
+    ``asks_language_model``: what no part of the order understands is sent to the configured language model.
     """
 
     world = models.OneToOneField(World, on_delete=models.CASCADE, related_name="answering")
@@ -42,6 +43,7 @@ class Answering(models.Model):
     allowed_wrong = models.FloatField(
         default=0.02, validators=[MinValueValidator(0.0), MaxValueValidator(MOST_ALLOWED_WRONG)]
     )
+    asks_language_model = models.BooleanField(default=False)
     version = models.PositiveIntegerField(default=1)
     changed_by = models.ForeignKey(User, null=True, on_delete=models.SET_NULL, related_name="+")
     changed_at = models.DateTimeField(default=timezone.now)
@@ -77,11 +79,11 @@ class AnswererEvaluation(models.Model):
     ``count``; ``wrong_acts`` and ``confirmed_right`` are among them. ``intervals``: figure → the ends of its 95 %
     interval, fractions of 1 (``results.answerer_figures.FIGURES``).
 
-    ``calibration`` has the weights, how many utterances of people they were fitted to, the operating point, and the
-    share of wrong acts that was allowed. ``answers`` are [probability, has the same plan, decision], the probability
-    from a calibration without the cluster of the example, None where nothing was understood. ``brier`` is the Brier
-    score of these probabilities, ``brier_before`` that of what the parts say themselves; None where nothing was
-    answered. ``seconds`` are of processor time for one answer.
+    ``calibration`` has the weights, how many utterances of people they were fitted to, which run was the last part and
+    how many of them it answered, the operating point, and the share of wrong acts that was allowed. ``answers`` are
+    [probability, has the same plan, decision], the probability from a calibration without the cluster of the example,
+    None where nothing was understood. ``brier`` is the Brier score of these probabilities, ``brier_before`` that of
+    what the parts say themselves; None where nothing was answered. ``seconds`` are of processor time for one answer.
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="answerer_evaluations")

@@ -228,6 +228,10 @@ class Parser(ABC):
         """
         return self
 
+    def once(self) -> Parser:
+        """Return this parser, which puts no question again that a server did not answer."""
+        return self
+
     @abstractmethod
     def save(self, folder: Path) -> None:
         """Write the fitted parser into ``folder`` (made if absent) as JSON and safetensors."""

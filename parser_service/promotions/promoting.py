@@ -7,13 +7,16 @@ from contextlib import contextmanager
 from http import HTTPStatus
 
 from django.db import transaction
+from django.db.models import QuerySet
 from django.utils import timezone
 
 from annotations.language.errors import Refusal
 from annotations.models import User, World
 from annotations.models.background import Status
 from parser_service.models import Promotion, PromotionState, TrainingRun
-from parser_service.parsers.registry import title_of, untrained
+from parser_service.models.answering import answering_of
+from parser_service.parsers.conditions import Protocol
+from parser_service.parsers.registry import Needs, needing, title_of, untrained
 from parser_service.promotions.score_evidence import evidence_for
 
 MOST_REASON = 500  # characters
@@ -33,6 +36,23 @@ def learned_part(world: World) -> TrainingRun | None:
     """
     run = promoted_run(world)
     return run if run and is_learned(run) else None
+
+
+def last_runs() -> QuerySet[TrainingRun]:
+    """Return the runs that can be the last part of what answers in their world, the newest first.
+
+    They ask a language model, and know the predicates to which its answers are held.
+    """
+    asking = needing(Needs.SERVER)
+    runs = TrainingRun.objects.succeeded().filter(parser__in=asking, protocol=Protocol.DOMAIN)
+    return runs.order_by("-pk")
+
+
+def last_part(world: World) -> TrainingRun | None:
+    """Return the run that is asked last in ``world``; None where no language model is asked there or has a run."""
+    if not answering_of(world).asks_language_model:
+        return None
+    return last_runs().filter(world=world).first()
 
 
 def is_learned(run: TrainingRun) -> bool:

@@ -53,11 +53,14 @@ FIGURES = {
 
 
 class Answerer(Protocol):
-    """Whoever answers in a world. ``run`` is that of the learned parser, None where none is asked; ``order`` is an
-    ``AnsweringOrder``."""
+    """Whoever answers in a world. ``run`` is that of the learned parser and ``last_run`` the key of that of the last
+    part, None where none is asked; ``order`` is an ``AnsweringOrder``."""
 
     @property
     def run(self) -> TrainingRun | None: ...
+
+    @property
+    def last_run(self) -> int | None: ...
 
     @property
     def order(self) -> str: ...
@@ -128,7 +131,7 @@ def evaluate_answerer(
             revision=revision,
             **values,
         )
-        for values in _evaluate(measured, allowed)
+        for values in _evaluate(measured, allowed, answerer.last_run)
     ]
     with progress.writing():
         same = {"split": split, "run": answerer.run, "order": answerer.order}
@@ -187,13 +190,16 @@ def as_said(utterance: str, ontology: Ontology) -> str:
     return CLASS_TOKEN.sub(fill, normalise(utterance))
 
 
-def _evaluate(measured: Sequence[_Measured], allowed: float) -> list[dict[str, Any]]:
+def _evaluate(
+    measured: Sequence[_Measured], allowed: float, last_run: int | None
+) -> list[dict[str, Any]]:
     """Return the values of a row for each part and test source with examples; ``mixed`` where both have some."""
     calibrated, sure = _calibrate(measured, allowed)
     about = {
         **calibrated.calibration.to_json(),
         "point": {"act": calibrated.point.act, "confirm": calibrated.point.confirm},
         "allowed_wrong": allowed,
+        "last_run": last_run,
     }
     made_at = timezone.now()
     rows = []
@@ -235,7 +241,7 @@ def _calibrate(measured: Sequence[_Measured], allowed: float) -> tuple[Calibrate
 
     def settle(of: _Measured, calibrated: Calibrated) -> _Measured:
         sure = probability(of)
-        decision = of.answer.decision(sure, calibrated.point, calibrated.has_people)
+        decision = of.answer.decision(sure, calibrated.point, whole)
         return _Measured(of.example, of.cluster, of.answer, of.judgement, sure, decision)
 
     usual = Calibrated(whole, point_of([], allowed))

@@ -72,6 +72,10 @@ class MeasuredAnswerer:
         key = self.answerer.run
         return None if key is None else TrainingRun.objects.get(pk=key)
 
+    @property
+    def last_run(self) -> int | None:
+        return self.answerer.last.run if self.answerer.last else None
+
     def answer(self, utterances: Sequence[str]) -> list[AnsweredForm]:
         return self.answerer.measure(utterances)
 

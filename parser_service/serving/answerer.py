@@ -1,4 +1,5 @@
-"""What a world answers: its grammar oracle first, then its learned parser, then a question or UNKNOWN.
+"""What a world answers: its grammar oracle first, then its learned parser, then a language model where the world asks
+one, then a question or UNKNOWN.
 
 An utterance that the oracle understands as it is written needs no other part. Where the oracle is silent, hears
 something else than what is written, or reads it in several ways, the learned part is asked too. Every answer gets a
@@ -104,7 +105,7 @@ class LoadedParser:
 class PartAnswer:
     """What one part answered to an utterance: ``text`` is what it was given. ``agrees`` says whether the other part
     gives the same form; None where that was not asked or is silent. ``pieces`` are the answers to the commands of an
-    utterance that holds several."""
+    utterance that holds several. ``missing`` says why the last part did not answer."""
 
     utterance: str
     text: str
@@ -113,6 +114,7 @@ class PartAnswer:
     agrees: bool | None = None
     pieces: tuple[PartAnswer, ...] = ()
     changes: tuple[HeardChange, ...] = ()
+    missing: str = ""
 
     def said_in(self, utterance: str) -> PartAnswer:
         """Return the same as the answer to an utterance that has this one inside."""
@@ -151,8 +153,9 @@ class Answer:
 class Answerer:
     """The parts of a world and the writer of its answers. They answer a request and do not change meanwhile.
 
-    ``oracle`` answers first, ``learned`` where it is silent; at least one is there. ``problem`` says why the learned
-    part is missing, where it should be there.
+    ``oracle`` answers first, ``learned`` where it is silent; at least one is there. ``last`` is a language model, which
+    is asked where nothing else was understood. ``problem`` and ``last_problem`` say why the learned part and the last
+    one are missing, where they should be there.
     """
 
     world: str
@@ -161,14 +164,16 @@ class Answerer:
     stopping: StoppingWords
     oracle: LoadedParser | None = None
     learned: LoadedParser | None = None
+    last: LoadedParser | None = None
     calibrated: Calibrated = field(default_factory=Calibrated)
     problem: str = ""
+    last_problem: str = ""
     wanted: Any = None  # what of the database it was made of (``shelf.WantedAnswerer``)
 
     @property
     def names(self) -> str:
         """The names of the parts, in the order in which they answer."""
-        return ", ".join(part.name for part in (self.oracle, self.learned) if part)
+        return ", ".join(part.name for part in (self.oracle, self.learned, self.last) if part)
 
     @property
     def run(self) -> int | None:
@@ -177,36 +182,82 @@ class Answerer:
 
     @property
     def size(self) -> int:
-        """Bytes that the learned part takes."""
-        return self.learned.size if self.learned else 0
+        """Bytes that the parts take that were loaded."""
+        return sum(part.size for part in (self.learned, self.last) if part)
 
     @property
     def lines_together(self) -> int:
         # The oracle looks at each line alone, so that several together would only come later.
-        return self.learned.lines_together if self.learned else 1
+        loaded = [part.lines_together for part in (self.learned, self.last) if part]
+        return min(loaded, default=1)
 
     def parse(self, utterances: Sequence[str], beam: int) -> list[str]:
         """Return the answer to each utterance, as JSON. Raises as ``ask``."""
         return [self.write(each) for each in self.ask(utterances, beam)]
 
     def ask(self, utterances: Sequence[str], beam: int) -> list[Answer]:
-        """Return the answer to each utterance. Raises NotServed where a part asks a server that does not answer in
-        time."""
+        """Return the answer to each utterance. Raises NotServed where the learned part asks a server that does not
+        answer in time."""
+        return self._ask_last(self._ask_own(utterances, beam), beam)
+
+    def _ask_own(self, utterances: Sequence[str], beam: int) -> list[Answer]:
+        """Return the answers without the last part."""
         given = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
         answers = map(self.judge, self._ask_learned(given, beam))
         return [self._cut_again(each, beam) for each in answers]
+
+    def _ask_last(self, answers: Sequence[Answer], beam: int) -> list[Answer]:
+        """Return the answers with what the last part says where nothing was understood and nothing speaks against it.
+
+        Where it does not answer once, the others are not asked: whoever waits gets the question instead.
+        """
+        missing, asked = self.last_problem, []
+        for answer in answers:
+            if answer.several:
+                several = self._ask_last(answer.several, beam)
+                if several != list(answer.several):
+                    given = replace(answer.given, pieces=tuple(each.given for each in several))
+                    answer = self.judge(given)
+            elif _is_lost(answer) and (missing or self.last):
+                answer = self._ask_last_alone(answer, beam, missing)
+            missing = missing or next(_missing(answer.given), "")
+            asked.append(answer)
+        return asked
+
+    def _ask_last_alone(self, answer: Answer, beam: int, missing: str) -> Answer:
+        """Return what the last part answers instead, or ``answer`` where it gives nothing, with why."""
+        given = answer.given
+        if not missing and self.last:
+            cleaned = self.reader.clean(given.utterance)
+            try:
+                [candidates] = self.last.ask([cleaned.text], beam)
+            except NotServed as error:
+                missing = error.message
+            else:
+                better = self.judge(
+                    PartAnswer(
+                        given.utterance,
+                        cleaned.text,
+                        self.last,
+                        candidates,
+                        changes=cleaned.changes,
+                    )
+                )
+                return answer if _is_lost(better) else better
+        return replace(answer, given=replace(given, missing=missing))
 
     def ask_best(self, alternatives: Sequence[tuple[str, float]], beam: int) -> Answer:
         """Return the answer to the best of a recogniser's alternatives that is understood, or to the first; each has a
         text and a score. Raises as ``ask``."""
         texts = [text for text, _ in alternatives]
-        answers = dict(zip(texts, self.ask(texts, beam), strict=True))
+        answers = dict(zip(texts, self._ask_own(texts, beam), strict=True))
         best = (
             0
             if len(texts) == 1
             else best_alternative(alternatives, lambda text: self._rate(answers[text]))
         )
-        return answers[texts[best or 0]]
+        [answer] = self._ask_last([answers[texts[best or 0]]], beam)
+        return answer
 
     def _rate(self, answer: Answer) -> float | None:
         """Return how well an utterance was understood, higher is better; None where it was not."""
@@ -312,11 +363,16 @@ class Answerer:
         return self.judge(PartAnswer("", "", self.oracle or self.learned))
 
     def measure(self, utterances: Sequence[str]) -> list[AnsweredForm]:
-        """Return what is known of the answer to each utterance, with its share of the processor time."""
+        """Return what is known of the answer to each utterance, with its share of the processor time.
+
+        Raises NotServed where a part asks a server that does not answer: a missing answer is none that is wrong.
+        """
         began = time.process_time()
-        answers = [each.about for each in self.ask(utterances, USUAL_BEAM)]
+        answers = self.ask(utterances, USUAL_BEAM)
+        if missing := next((why for each in answers for why in _missing(each.given)), ""):
+            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, missing)
         seconds = (time.process_time() - began) / max(len(answers), 1)
-        return [replace(each, seconds=seconds) for each in answers]
+        return [replace(each.about, seconds=seconds) for each in answers]
 
     def judge(self, given: PartAnswer) -> Answer:
         """Return an answer with how sure it is."""
@@ -329,15 +385,17 @@ class Answerer:
         readings = [each for each in readings if each.slots is not None]
         fits = Fit()
         reasons: tuple[Objection, ...] = ()
-        if given.part is self.learned or not readings:
+        has_learned = given.part is not None and given.part is not self.oracle
+        if has_learned or not readings:
             reasons = objections(heard)
-        if given.part is self.learned:
-            readings, fits = self._fit(readings, heard, given.utterance)
+        if has_learned:
+            readings, fits = self._fit(readings, heard, given)
         about = replace(self._about(given, heard, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
             probability = self.calibrated.calibration.probability(about.evidence)
-        decision = about.decision(probability, self.calibrated.point, self.calibrated.has_people)
+        calibrated = self.calibrated
+        decision = about.decision(probability, calibrated.point, calibrated.calibration)
         if decision is Decision.REFUSE:
             reasons = (*reasons, *self.stopping.in_(heard))
         if not about.objections:
@@ -345,7 +403,7 @@ class Answerer:
         return Answer(given, (), heard, readings, about, probability, decision, reasons)
 
     def _fit(
-        self, readings: Sequence[Reading[str]], heard: Anonymized, utterance: str
+        self, readings: Sequence[Reading[str]], heard: Anonymized, given: PartAnswer
     ) -> tuple[list[Reading[str]], Fit]:
         """Return the readings of a learned parser in the order of how well they fit what was said, and the fit of the
         first.
@@ -357,7 +415,7 @@ class Answerer:
         known = [each for each in readings if each.candidate.form != UNKNOWN]
         others = [each for each in readings if each.candidate.form == UNKNOWN]
         fits = [self._fit_of(each, heard) for each in known]
-        scores = [_log_probability(each.candidate.score, self.learned) for each in known]
+        scores = [_log_probability(each.candidate.score, given.part) for each in known]
         scored = [(0.0 if of is None else of, fit) for of, fit in zip(scores, fits, strict=True)]
         order = best_fitting(scored) if None not in scores else list(range(len(known)))
         ordered, best = [known[at] for at in order] + others, fits[order[0]]
@@ -366,7 +424,7 @@ class Answerer:
             first = ordered[0]
             form, values = exchange(_form(first), first.slots or (), pair)
             turned = replace(first.candidate, form=canonical_text(form), values=values)
-            [reading] = self.writer.readings(heard, [turned], None, utterance)
+            [reading] = self.writer.readings(heard, [turned], None, given.utterance)
             fit = self._fit_of(reading, heard)
             if not fit.exchanged:
                 return [reading, *ordered], replace(fit, exchanged=(pair,))
@@ -422,8 +480,8 @@ class Answerer:
         given, language = answer.given, self.writer.language
         said = self._anonymize(given.utterance)
         warnings = unknown_tokens(given.utterance, language.ontology)
-        if self.problem:
-            warnings = (*warnings, self.problem)
+        missing = next(_missing(given), "")
+        warnings = (*warnings, *filter(None, (self.problem, missing)))
         parse = ParsedUtterance(said, given.text, (), warnings, is_cut_in(given.candidates))
         part = given.part
         first = json.loads(answer.readings[0].answer) if answer.readings else {}
@@ -488,7 +546,7 @@ class Answerer:
         scores = [_log_probability(each.candidate.score, part) for each in readings[:2]]
         known = [score for score in scores if score is not None]
         evidence = Evidence(
-            part=AnsweringPart.ORACLE if is_oracle else AnsweringPart.LEARNED,
+            part=self._kind_of(part),
             is_exact=is_oracle and not any(each.kind in _DOUBTFUL for each in best.candidate.heard),
             heard_cost=float(sum(each.kind != _COURTESY for each in best.candidate.heard))
             if is_oracle
@@ -517,6 +575,12 @@ class Answerer:
             len(each.slots) == 2 and not each.is_possible for each in fits.exchanged
         )
         return AnsweredForm(best.candidate.form, evidence, is_open, ambiguous=is_ambiguous)
+
+    def _kind_of(self, part: LoadedParser | None) -> AnsweringPart:
+        if part is not None and part is self.oracle:
+            return AnsweringPart.ORACLE
+        is_last = part is not None and part is self.last
+        return AnsweringPart.LAST if is_last else AnsweringPart.LEARNED
 
     def _together(self, answer: Answer) -> dict[str, Any]:
         """Return what is said of several commands: the answer to each, and one plan of all."""
@@ -579,6 +643,19 @@ def _is_settled(answer: PartAnswer) -> bool:
         return True
     scores = [each.score for each in answer.candidates]
     return bool(scores) and scores[0] == 0 and scores.count(0) == 1
+
+
+def _is_lost(answer: Answer) -> bool:
+    """Return whether nothing was understood, or nothing that is trusted, of what may be a command."""
+    return answer.is_unknown and not answer.about.objections and bool(answer.given.text.strip())
+
+
+def _missing(given: PartAnswer) -> Iterator[str]:
+    """Yield why the last part did not answer an utterance, or one of its commands."""
+    if given.missing:
+        yield given.missing
+    for piece in given.pieces:
+        yield from _missing(piece)
 
 
 def _misfits(fits: Fit) -> Iterator[Objection]:

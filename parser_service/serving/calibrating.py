@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from annotations.models import World
 from parser_service.analysis.sureness import (
-    LEAST_PEOPLE,
+    AnsweringPart,
     Calibration,
     Decision,
     OperatingPoint,
@@ -31,12 +31,20 @@ class Calibrated:
     @property
     def has_people(self) -> bool:
         """Whether enough utterances of people calibrated it to act on what a learned parser says."""
-        return self.calibration.examples >= LEAST_PEOPLE
+        return self.calibration.has_people(AnsweringPart.LEARNED)
+
+    @property
+    def has_people_of_last(self) -> bool:
+        """The same for the last part, by the utterances that it answered itself."""
+        return self.calibration.has_people(AnsweringPart.LAST)
 
 
-def calibrated(world: World, run: int | None, order: str, allowed_wrong: float) -> Calibrated:
+def calibrated(
+    world: World, run: int | None, order: str, allowed_wrong: float, last_run: int | None = None
+) -> Calibrated:
     """Return the newest calibration of the answers that ``order`` and the learned parser of ``run`` give in ``world``.
 
+    What was measured with another last part than ``last_run`` tells nothing of this one.
     The operating point follows ``allowed_wrong``, a fraction of 1, whatever was allowed when it was measured. Where
     nothing was measured it is the default. One query.
     """
@@ -46,7 +54,11 @@ def calibrated(world: World, run: int | None, order: str, allowed_wrong: float) 
         return Calibrated(Calibration(), operating_point([], [], allowed_wrong))
     answers = [answer for row in newest for answer in row.answers]
     point = point_of(answers, allowed_wrong)
-    return Calibrated(Calibration.read(newest[0].calibration), point)
+    stored = newest[0].calibration
+    calibration = Calibration.read(stored)
+    if last_run is None or stored.get("last_run") != last_run:
+        calibration = replace(calibration, last_examples=0)
+    return Calibrated(calibration, point)
 
 
 def point_of(answers: Iterable[MeasuredAnswer], allowed_wrong: float) -> OperatingPoint:

@@ -15,6 +15,7 @@ Predict = Callable[[Sequence[str], int, Check], list[list[Candidate]]]
 # Below the 30 s that pages and REST wait for the parse server (``parser_client.PATIENCE``). Where nobody waits, as
 # for the lines of a file on the command line or of a job, the server may take as long as it needs.
 PATIENCE = 20.0
+LAST_SHARE = 0.25  # of the patience, for a part behind which a question waits: 5 s
 SEATS = 8  # requests that may wait for such parsers at once, of all threads of the parse server
 TOGETHER = 4  # lines of a longer request, so that each part of it is answered within the patience
 

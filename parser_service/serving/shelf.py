@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from collections import OrderedDict, defaultdict
@@ -37,6 +38,7 @@ from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.oracle import GrammarOracle
 from parser_service.parsers.registry import ORACLE, untrained
+from parser_service.promotions.promoting import last_runs
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.answerer import (
     LINES_TOGETHER,
@@ -49,7 +51,7 @@ from parser_service.serving.calibrating import calibrated
 from parser_service.serving.loading import load_anew, make_untrained, size_of
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.preparing import WorldLanguage
-from parser_service.serving.remote import PATIENCE, SEATS, TOGETHER, RemoteAsker
+from parser_service.serving.remote import LAST_SHARE, PATIENCE, SEATS, TOGETHER, RemoteAsker
 
 logger = logging.getLogger(__name__)
 
@@ -65,6 +67,7 @@ class WantedAnswerer:
 
     ``language`` stands for ontology and predicates, ``revision`` for the grammar, ``names`` for those
     of actions, and ``recipes`` for these and the primitives; ``measured`` for what was last measured of its answers.
+    ``last_run`` is the key of the run whose language model is asked last.
     """
 
     world: int
@@ -76,6 +79,7 @@ class WantedAnswerer:
     order: str = AnsweringOrder.BOTH
     allowed_wrong: float = ALLOWED_WRONG
     measured: int = 0
+    last_run: int | None = None
 
     def knowledge(self, protocol: str) -> tuple[object, ...]:
         """Return what a run may know of the world; it is loaded anew where that changes."""
@@ -85,7 +89,7 @@ class WantedAnswerer:
 
 
 def read_wanted() -> dict[str, WantedAnswerer]:
-    """Return world name → what is wanted there, in ten queries.
+    """Return world name → what is wanted there, in eleven queries.
 
     Every edit and import of rows adds, deletes or raises a version, so that number, last key and sum of
     the versions together change.
@@ -94,12 +98,9 @@ def read_wanted() -> dict[str, WantedAnswerer]:
     recipes = _totals((Primitive, "world"), (Recipe, "world"))
     runs = dict(Promotion.objects.present().order_by().values_list("world", "run"))
     names = dict(ActionNames.objects.values_list("world", "version"))
-    chosen = {
-        world: (order, allowed)
-        for world, order, allowed in Answering.objects.values_list(
-            "world", "order", "allowed_wrong"
-        )
-    }
+    chosen = {row.world_id: row for row in Answering.objects.all()}
+    asking = [world for world, row in chosen.items() if row.asks_language_model]
+    last = dict(last_runs().filter(world__in=asking).order_by("pk").values_list("world", "pk"))
     rated = AnswererEvaluation.objects.order_by().values_list("world")
     measured = dict(rated.annotate(Max("pk")))
     rows = World.objects.present().values_list("pk", "name", "revision")
@@ -111,8 +112,10 @@ def read_wanted() -> dict[str, WantedAnswerer]:
             revision,
             names.get(key, 0),
             tuple(recipes[key]),
-            *chosen.get(key, (AnsweringOrder.BOTH, ALLOWED_WRONG)),
+            chosen[key].order if key in chosen else AnsweringOrder.BOTH,
+            chosen[key].allowed_wrong if key in chosen else ALLOWED_WRONG,
             measured.get(key, 0),
+            last.get(key),
         )
         for key, name, revision in rows
     }
@@ -227,7 +230,15 @@ class Shelf:
             )
             raise NotServed(409, f"{sentence} Write templates first.", "no_templates")
         reader = _reader(answerer.writer, oracle)
-        return replace(answerer, reader=reader, oracle=oracle, learned=None, problem="")
+        return replace(
+            answerer,
+            reader=reader,
+            oracle=oracle,
+            learned=None,
+            last=None,
+            problem="",
+            last_problem="",
+        )
 
     def _run_in(self, world: str) -> int | None:
         answerer = self._answerers.get(world)
@@ -318,7 +329,7 @@ class Shelf:
         """Return a run alone, loading it where it is not there."""
         held = self._answerers.get(world)
         if held is not None and held.learned is not None and held.learned.run == run:
-            return replace(held, oracle=None, problem="")
+            return replace(held, oracle=None, last=None, problem="", last_problem="")
         with self._loading:
             other = self._others.get(run)
             if other is None or other.world != world or other.wanted.language != wanted.language:
@@ -362,10 +373,26 @@ class Shelf:
         if oracle is None and learned is None:
             raise Refusal(_nobody_answers(name, wanted), "no_promoted_run", HTTPStatus.CONFLICT)
         run = learned.run if learned else None
-        sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong)
-        reader = _reader(writer, oracle)
+        last, last_problem = None, ""
+        if wanted.last_run not in (None, run):
+            try:
+                last = self._learned(
+                    name, wanted, wanted.last_run, held.last if held else None, is_last=True
+                )
+            except Refusal as error:
+                last_problem = error.message
+        sureness = calibrated(world, run, wanted.order, wanted.allowed_wrong, wanted.last_run)
         return Answerer(
-            name, writer, reader, _stopping(writer), oracle, learned, sureness, wanted=wanted
+            world=name,
+            writer=writer,
+            reader=_reader(writer, oracle),
+            stopping=_stopping(writer),
+            oracle=oracle,
+            learned=learned,
+            last=last,
+            calibrated=sureness,
+            last_problem=last_problem,
+            wanted=wanted,
         )
 
     def _load_run(
@@ -378,7 +405,13 @@ class Shelf:
         sureness = calibrated(world, run, AnsweringOrder.LEARNED, wanted.allowed_wrong)
         reader = _reader(writer, None)
         return Answerer(
-            name, writer, reader, _stopping(writer), None, learned, sureness, wanted=wanted
+            name,
+            writer,
+            reader,
+            _stopping(writer),
+            learned=learned,
+            calibrated=sureness,
+            wanted=wanted,
         )
 
     def _writer(self, world: World, wanted: WantedAnswerer, held: Answerer | None) -> AnswerWriter:
@@ -408,9 +441,10 @@ class Shelf:
         run: int,
         held: LoadedParser | None,
         any_parser: bool = False,
+        is_last: bool = False,
     ) -> LoadedParser | None:
         """Load the parser of a run; None for one that learns nothing, such as an oracle of another day, unless
-        ``any_parser`` is asked for."""
+        ``any_parser`` is asked for. The last part is waited for a shorter time, since a question waits behind it."""
         of_world = TrainingRun.objects.select_related("world").filter(world=wanted.world)
         row = of_world.filter(pk=run).first()
         if row is None:
@@ -420,10 +454,18 @@ class Shelf:
         knowledge = wanted.knowledge(row.protocol)
         if held is not None and (held.run, held.knowledge) == (row.pk, knowledge):
             return held
-        return self._hold(load_anew(row).hesitant(), knowledge, row.pk, size_of(row))
+        parser, patience = load_anew(row).hesitant(), self._patience
+        if is_last and math.isfinite(patience):
+            parser, patience = parser.once(), patience * LAST_SHARE
+        return self._hold(parser, knowledge, row.pk, size_of(row), patience)
 
     def _hold(
-        self, parser: Parser, knowledge: tuple[object, ...], run: int | None = None, size: int = 0
+        self,
+        parser: Parser,
+        knowledge: tuple[object, ...],
+        run: int | None = None,
+        size: int = 0,
+        patience: float = PATIENCE,
     ) -> LoadedParser:
         return LoadedParser(
             run=run,
@@ -431,7 +473,7 @@ class Shelf:
             score_kind=str(parser.score_kind or ""),
             knowledge=knowledge,
             size=size,
-            batcher=RemoteAsker(parser.predict, self._seats, self._patience)
+            batcher=RemoteAsker(parser.predict, self._seats, patience)
             if parser.asks_a_server
             else Batcher(parser.predict, self._turn, self.metrics.batches.observe),
             lines_together=TOGETHER if parser.asks_a_server else LINES_TOGETHER,

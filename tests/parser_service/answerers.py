@@ -18,6 +18,7 @@ class WrittenAnswerer:
     answers: Mapping[str, AnsweredForm]
     run: TrainingRun | None = None
     order: str = "both"
+    last_run: int | None = None
     asked: list[str] = field(default_factory=list)
 
     def answer(self, utterances: Sequence[str]) -> list[AnsweredForm]:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
+from typing import Self
 
 import numpy as np
 
@@ -115,6 +116,12 @@ class LanguageModel(PairKeeper):
             f"The server at {self._asker.server.name} answers with {self.answered_by}, the first time "
             f"in {time.monotonic() - began:.1f} s."
         )
+
+    def once(self) -> Self:
+        """Return this parser, which asks no question again that its server did not answer."""
+        patience = replace(self._asker.server.patience, tries=1)
+        self._asker = Asker(replace(self._asker.server, patience=patience), self.config.at_once)
+        return self
 
     def predict(
         self, utterances: Sequence[str], beam_width: int = 1, check: Check = keep_going

@@ -17,8 +17,14 @@ from annotations.web.rest.routes import WorldRoute
 from parser_service.models import Answering, AnsweringOrder
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
 from parser_service.parsers.registry import ORACLE
-from parser_service.serving.answering import answering_parts, choose_answering, version_of
-from parser_service.serving.calibrating import calibrated
+from parser_service.serving.answering import (
+    answering_parts,
+    calibrated_parts,
+    choose_answering,
+    version_of,
+)
+
+_CHOSEN = ("order", "allowed_wrong", "asks_language_model")
 
 
 class AnsweringPartSerializer(serializers.Serializer[Any]):
@@ -37,11 +43,13 @@ class OperatingPointSerializer(serializers.Serializer[Any]):
 
 class AnswererSerializer(serializers.Serializer[Any]):
     """``allowed_wrong`` is the share of wrong ones that is allowed among what is acted on, ``version`` 0 until somebody
-    chooses. ``parts`` are asked in this order. ``calibrated_on`` is how many utterances of people said what the
-    evidence for an answer is worth."""
+    chooses. ``asks_language_model``: whether what no other part understands is sent to the configured language model.
+    ``parts`` are asked in this order. ``calibrated_on`` is how many utterances of people said what the evidence for an
+    answer is worth."""
 
     order = serializers.ChoiceField(choices=AnsweringOrder.choices)
     allowed_wrong = serializers.FloatField()
+    asks_language_model = serializers.BooleanField()
     version = serializers.IntegerField()
     parts = AnsweringPartSerializer(many=True)
     calibrated_on = serializers.IntegerField()
@@ -52,6 +60,7 @@ class AnswererChange(Fields):
     """What is to be otherwise."""
 
     allowed_wrong = serializers.FloatField(min_value=0, max_value=MOST_ALLOWED_WRONG)
+    asks_language_model = serializers.BooleanField()
 
     def get_fields(self) -> dict[str, Any]:
         order = serializers.ChoiceField(choices=AnsweringOrder.choices)
@@ -84,19 +93,17 @@ class OneAnswerer(WorldRoute):
             self.hold_world()
             shown = self._shown()
             require_match(request, shown, shown)
-            chosen = {"order": shown["order"], "allowed_wrong": shown["allowed_wrong"], **sent}
+            chosen = {name: shown[name] for name in _CHOSEN} | sent
             choose_answering(self.world, **chosen, by=request.user, version=shown["version"])
         return self.get(request)
 
     def _shown(self) -> dict[str, Any]:
         row, parts = answering_of(self.world), answering_parts(self.world)
         oracle = [{"parser": ORACLE, "run": None}] if parts.has_oracle else []
-        learned = [{"parser": parts.run.parser, "run": parts.run.pk}] if parts.run else []
-        run = parts.run.pk if parts.run else None
-        found = calibrated(self.world, run, row.order, row.allowed_wrong)
+        learned = [{"parser": each.parser, "run": each.pk} for each in parts.runs]
+        found = calibrated_parts(self.world, row, parts)
         return {
-            "order": row.order,
-            "allowed_wrong": row.allowed_wrong,
+            **{name: getattr(row, name) for name in _CHOSEN},
             "version": version_of(row),
             "parts": oracle + learned,
             "calibrated_on": found.calibration.examples,

@@ -17,8 +17,10 @@ from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
 from annotations.web.editing.undo import say_with_undo
+from parser_service.analysis.sureness import LEAST_PEOPLE
 from parser_service.models import AnsweringOrder, Promotion, TrainingRun
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
+from parser_service.parsers.llm.server_address import server
 from parser_service.parsers.registry import untrained
 from parser_service.promotions.promoting import (
     MOST_REASON,
@@ -31,8 +33,13 @@ from parser_service.promotions.promoting import (
 )
 from parser_service.promotions.score_evidence import compare_scores, judged_by
 from parser_service.runs.analysis_requests import request_measurement_with
-from parser_service.serving.answering import answering_parts, choose_answering, version_of
-from parser_service.serving.calibrating import calibrated
+from parser_service.serving.answering import (
+    answering_parts,
+    calibrated_parts,
+    choose_answering,
+    version_of,
+    why_no_last_part,
+)
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
 
 MOST_LISTED = 100  # runs that may be promoted, and decisions of the history
@@ -124,10 +131,12 @@ def answering(request: WorldRequest, world: World) -> HttpResponse:
 
     def choose() -> None:
         version = number_in(sent.get("version", ""))
-        row = choose_answering(world, sent.get("order", ""), allowed, request.user, version)
+        asks = bool(sent.get("asks_language_model"))
+        row = choose_answering(world, sent.get("order", ""), allowed, request.user, version, asks)
         values = {
             "order": before.order,
             "allowed_percent": 100 * before.allowed_wrong,
+            "asks_language_model": "on" * before.asks_language_model,
             "version": row.version,
         }
         address = reverse("answering", kwargs={"world": world.name})
@@ -160,7 +169,6 @@ def _decide(request: WorldRequest, world: World, verb: Callable[[], object]) -> 
 def _what_answers(world: World) -> dict[str, Any]:
     """Return which parts answer, what was chosen about them, and how sure an answer has to be."""
     row, parts = answering_of(world), answering_parts(world)
-    run = parts.run.pk if parts.run else None
     return {
         "answering": row,
         "answering_version": version_of(row),
@@ -168,7 +176,10 @@ def _what_answers(world: World) -> dict[str, Any]:
         "most_percent": round(100 * MOST_ALLOWED_WRONG),
         "orders": AnsweringOrder.choices,
         "parts": parts,
-        "calibrated": calibrated(world, run, row.order, row.allowed_wrong),
+        "calibrated": calibrated_parts(world, row, parts),
+        "last_problem": why_no_last_part(world),
+        "model_server": server(),
+        "least_people": LEAST_PEOPLE,
     }
 
 

@@ -46,7 +46,7 @@ from annotations.world_archive.archive_tables import tables
 from annotations.world_archive.world_export import world_archive
 from annotations.world_archive.world_import import import_world
 from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
-from parser_service.models.answering import answering_of
+from parser_service.models.answering import Answering, answering_of
 from parser_service.robots.action_naming import names_of, store_names, version_of
 from parser_service.serving.answering import choose_answering
 from tests.annotations.world_archive.packing import (
@@ -151,8 +151,10 @@ def test_the_names_of_actions_go_with_the_world(tiny_world, annotator):
 
 def test_the_choice_of_what_answers_goes_with_the_world(tiny_world, admin):
     choose_answering(tiny_world, "oracle", 0.1, admin, 0)
+    Answering.objects.update(asks_language_model=True)
     row = answering_of(same_again(tiny_world))
     assert (row.order, row.allowed_wrong, row.changed_by) == ("oracle", 0.1, admin)
+    assert row.asks_language_model
 
 
 @pytest.mark.parametrize(

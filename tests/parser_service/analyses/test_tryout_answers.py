@@ -44,9 +44,7 @@ def test_a_worker_answers_with_every_chosen_run(runs, annotator, hasty):
     assert [row.answers[str(run.pk)]["answers"][0]["form"] for run in runs] == [DEFAULT, FIND]
 
 
-def test_a_page_that_read_the_row_before_its_answer_asks_for_no_further_job(
-    runs, annotator, hasty
-):
+def test_a_page_that_read_the_row_before_its_answer_asks_for_no_further_job(runs, annotator, hasty):
     row = ask(runs[0].world, annotator, "find me a thing", runs)
     answer_all(runs[0].world)
     assert not row.is_answered, "it is as it was read"

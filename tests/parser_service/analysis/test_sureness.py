@@ -30,6 +30,7 @@ from parser_service.analysis.sureness import (
 )
 
 ORACLE = Evidence(AnsweringPart.ORACLE, is_exact=True)
+CALIBRATED = Calibration(examples=40)
 LEARNED = Evidence(AnsweringPart.LEARNED, learned_log_probability=float(np.log(0.77)))
 
 counts = st.integers(0, 5)
@@ -82,7 +83,7 @@ def made_up(number, weights, seed=0):
     random = np.random.default_rng(seed)
     made = [
         Evidence(
-            part=random.choice(list(AnsweringPart)),
+            part=random.choice([AnsweringPart.ORACLE, AnsweringPart.LEARNED]),
             is_exact=bool(random.random() < 0.5),
             heard_cost=float(random.integers(0, 12)),
             learned_log_probability=float(np.log(random.uniform(0.02, 0.99))),
@@ -300,10 +301,10 @@ def test_what_is_acted_on_is_open_in_nothing(truths):
 
 
 def test_an_answer_without_evidence_is_refused():
-    assert AnsweredForm().decision(0.99, POINT, True) == Decision.REFUSE
-    assert AnsweredForm("UNKNOWN", ORACLE).decision(0.99, POINT, True) == Decision.ACT
+    assert AnsweredForm().decision(0.99, POINT, CALIBRATED) == Decision.REFUSE
+    assert AnsweredForm("UNKNOWN", ORACLE).decision(0.99, POINT, CALIBRATED) == Decision.ACT
     hurt = AnsweredForm("UNKNOWN", replace(ORACLE, executable=False))
-    assert hurt.decision(0.99, POINT, True) == Decision.ASK
+    assert hurt.decision(0.99, POINT, CALIBRATED) == Decision.ASK
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from parser_service.promotions.promoting import promote
 from parser_service.serving.answering import choose_answering
 from tests.annotations.conftest import import_tiny
 from tests.notices import levels
+from tests.parser_service.llm_server import MODEL, installed_tiny_server
 from tests.parser_service.made_up import make_split
 from tests.parser_service.served import trained_run
 
@@ -97,3 +98,51 @@ def test_the_route_changes_what_was_read(run, call_as, admin, world):
     assert call_as(admin, "patch", API, {"allowed_wrong": 0.9}, if_match=now).status_code == 400
     assert call_as(admin, "patch", API, {"allowed_wrong": 0.2}, if_match=now).status_code == 200
     assert chosen(world) == ("learned", 0.2)
+
+
+@pytest.fixture
+def tiny(tmp_path):
+    with installed_tiny_server(tmp_path) as server:
+        yield server
+
+
+@pytest.fixture
+def model_run(run, tiny):
+    return trained_run(
+        make_split(run.world, "model"), parser="llm", config={"model": MODEL}, protocol="domain"
+    )
+
+
+def test_a_language_model_is_switched_on_and_off_on_the_page(model_run, adam, world):
+    assert adam.get(PAGE).context["last_problem"] == ""
+    sent = {"order": "both", "allowed_percent": "2", "version": 0, "asks_language_model": "on"}
+    page = adam.post(f"{PAGE}answering/", sent, follow=True)
+    assert levels(page) == ["success"] and page.context["parts"].last == model_run
+    assert f"{MODEL} at 127.0.0.1" in page.content.decode()
+    (message,) = page.context["messages"]
+    undo = dict(re.findall(r'name="(\w+)" value="([^"]*)"', str(message)))
+    adam.post(f"{PAGE}answering/", undo)
+    assert not answering_of(world).asks_language_model
+
+
+def test_the_page_says_why_no_language_model_can_be_asked(run, adam):
+    page = adam.get(PAGE)
+    assert page.context["last_problem"] and 'name="asks_language_model"' not in str(page.content)
+    sent = {"order": "both", "allowed_percent": "2", "version": 0, "asks_language_model": "on"}
+    assert levels(adam.post(f"{PAGE}answering/", sent, follow=True)) == ["error"]
+
+
+def test_the_route_switches_the_language_model(model_run, call_as, admin):
+    shown = call_as(admin, "get", API)
+    assert shown.json()["asks_language_model"] is False
+    sent = {"asks_language_model": True}
+    changed = call_as(admin, "patch", API, sent, if_match=shown["ETag"]).json()
+    assert changed["asks_language_model"] is True and changed["order"] == "both"
+    assert changed["parts"][-1] == {"parser": "llm", "run": model_run.pk}
+
+
+def test_the_route_refuses_a_language_model_that_cannot_be_asked(run, call_as, admin, world):
+    tag = call_as(admin, "get", API)["ETag"]
+    refused = call_as(admin, "patch", API, {"asks_language_model": True}, if_match=tag)
+    assert refused.status_code == 409
+    assert not answering_of(world).asks_language_model
