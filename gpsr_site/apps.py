@@ -1,6 +1,7 @@
 import gc
 
 from django.apps import AppConfig
+from django.core.checks import register
 
 
 class SiteConfig(AppConfig):
@@ -9,10 +10,13 @@ class SiteConfig(AppConfig):
     name = "gpsr_site"
 
     def ready(self) -> None:
-        """Start the garbage collector, which ``manage.py`` has stopped.
+        """Register the system check. Start the garbage collector, which ``manage.py`` has stopped.
 
         What is loaded stays to the end of the process. To look through it again and again while it
         is loaded takes a fifth of the time to start.
         """
         gc.freeze()
         gc.enable()
+        from gpsr_site.backup.backup_checks import check_columns
+
+        register(check_columns)

@@ -45,7 +45,8 @@ ROOMS = {
         "splits", "queueing", "people", "worlds",
     ),
     "annotations/models": (
-        "people", "worlds", "background", "editing", "description", "campaigns", "corpus", "splits", "queueing",
+        "short_texts", "people", "worlds", "background", "editing", "description", "campaigns", "corpus", "splits",
+        "queueing",
     ),
     "annotations/language": (
         "errors", "limits", "text", "decoding", "english", "symbols", "forms", "grammar", "ontology", "predicates",

@@ -100,7 +100,7 @@ def is_cancel_requested(work: BackgroundWork) -> bool:
 @outlasting
 def record_progress(work: BackgroundWork, fraction: float, activity: str) -> None:
     """Record how far the work is, 0 to 1, and what it does now. Raises Fenced."""
-    write(work, progress=min(max(fraction, 0.0), 1.0), activity=activity[:200])
+    write(work, progress=min(max(fraction, 0.0), 1.0), activity=activity)
 
 
 @outlasting

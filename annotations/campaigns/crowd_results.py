@@ -224,7 +224,7 @@ def store_results(
         rows.append(prepared(Submission, _COLUMNS, _unplaced(each, now)))
     with progress.writing():
         # Who imports at the same moment waits here, and finds these.
-        World.objects.select_for_update().get(pk=campaign.world_id)
+        World.objects.hold().get(pk=campaign.world_id)
         if campaign.pk is None:
             _store_campaign(plan)
         known = _known_assignments(campaign)

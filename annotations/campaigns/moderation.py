@@ -255,7 +255,7 @@ def _held(submissions: Sequence[Submission]) -> list[Submission]:
     rows = Submission.objects.filter(pk__in=keys).order_by("pk")
     if worlds := set(rows.values_list("contributor__campaign__world", flat=True)):
         # The world first, as whoever edits something in it does: nobody waits for the other then.
-        World.objects.select_for_update().get(pk=worlds.pop())
+        World.objects.hold().get(pk=worlds.pop())
     related = ("contributor__campaign__world", "prompt__command", "paraphrase", "utterance")
     return list(rows.select_for_update(of=("self",)).select_related(*related))
 

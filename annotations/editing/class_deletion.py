@@ -19,7 +19,7 @@ def delete_class(row: EntityClass, by: User, version: int) -> None:
     row is at another version or was deleted already.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=row.world_id)  # nothing uses it from here on
+        World.objects.hold().get(pk=row.world_id)  # nothing uses it from here on
         if reason := why_kept(row):
             raise Refusal(reason, "in_use", HTTPStatus.CONFLICT)
         delete(row, by, version)

@@ -11,7 +11,7 @@ from django.utils import timezone
 from annotations.editing.once_keys import made_before
 from annotations.language.errors import Refusal
 from annotations.models import Draft, User, World
-from annotations.models.editing import LONGEST_ABOUT, LONGEST_DEVICE, LONGEST_PAGE, NEW
+from annotations.models.editing import LONGEST_DEVICE, LONGEST_PAGE, NEW
 
 MOST_BYTES = 64 * 1024  # of a request that saves one
 MOST_DRAFTS = 200  # of one person in one world; beyond it the oldest goes
@@ -43,7 +43,7 @@ def read_draft(sent: Any) -> dict[str, Any]:
         "fields": fields,
         "device": device,
         "base_version": version,
-        "about": about[:LONGEST_ABOUT],
+        "about": about,
         "page": page if len(page) <= LONGEST_PAGE else "",
     }
 

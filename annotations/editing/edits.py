@@ -274,7 +274,7 @@ def _bring_up_to_date(world: World, by: User) -> None:
 
 def _lock(world: World) -> World:
     """Hold the world: imports and generation lock it too, and positions are counted by one at a time."""
-    return World.objects.select_for_update().get(pk=world.pk)
+    return World.objects.hold().get(pk=world.pk)
 
 
 def _lock_for(row: Editable) -> World:

@@ -62,7 +62,7 @@ def replace_book(world: World, book: RecipeBook, by: User, version: str = "") ->
     primitives = [Primitive.columns_of(str(each)) for each in book.primitives]
     recipes = [Recipe.columns_of(str(each)) for each in book.recipes]
     with transaction.atomic():
-        world = World.objects.select_for_update().get(pk=world.pk)
+        world = World.objects.hold().get(pk=world.pk)
         if version and version != version_of(world):
             raise Refusal(
                 "Somebody has changed the recipes meanwhile. Look at them again.",

@@ -18,9 +18,7 @@ def delete_primitive(row: Primitive, by: User, version: int) -> None:
     Raises Refusal where a recipe uses it, and Overtaken where it is at another version or was deleted already.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(
-            pk=row.world_id
-        )  # no recipe comes to use it from here on
+        World.objects.hold().get(pk=row.world_id)  # no recipe comes to use it from here on
         if reason := why_primitive_is_kept(row):
             raise Refusal(reason, "in_use", HTTPStatus.CONFLICT)
         delete(row, by, version)

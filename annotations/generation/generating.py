@@ -179,7 +179,7 @@ def _generate_once(
     with GeneratedWorld(world, categories, generated, progress, sample) as rows:
         progress.report(0.9, "writing")
         with progress.writing():
-            if counters_of(models.World.objects.select_for_update().get(pk=world.pk)) != counters:
+            if counters_of(models.World.objects.hold().get(pk=world.pk)) != counters:
                 return None
             changes = rows.write(counters)
             columns = tuple(complexity(world))

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from django.db import connection
+
 from annotations import models
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.kept_expansions import generate_at_once
@@ -39,7 +41,7 @@ def bring_up_to_date(world: models.World) -> UpdateOutcome:
     world as changed. A sample is drawn anew with its seed. A world that is too large, or that cannot be expanded, is
     left as it is and stays marked. Rows that are right already are not touched.
     """
-    locked = models.World.objects.select_for_update().get(pk=world.pk)
+    locked = models.World.objects.hold().get(pk=world.pk)
     if not locked.commands_are_stale:
         return UpdateOutcome(True)
     try:
@@ -62,11 +64,23 @@ def bring_up_to_date(world: models.World) -> UpdateOutcome:
 def start_update(world: models.World, by: models.User) -> UpdateOutcome:
     """Bring commands up to date with a change, in the caller's transaction, or ask a worker to.
 
-    The world was marked as changed before. A job that waits to generate it already is enough.
+    The world was marked as changed before. A job that waits to generate it already is enough. While others wait to
+    write, it is left to the last of them, or to the worker: expanding templates takes longer than all else.
     """
-    outcome = bring_up_to_date(world)
+    outcome = UpdateOutcome(False) if _others_wait() else bring_up_to_date(world)
     if not outcome.is_up_to_date:
         waiting = models.Job.objects.queued().filter(kind=models.JobKind.GENERATE, world=world)
         if not waiting.exists():
             request_job(models.JobKind.GENERATE, world.name, by)
     return outcome
+
+
+def _others_wait() -> bool:
+    """Return whether somebody waits for what this transaction holds; SQLite does not say."""
+    if connection.vendor != "postgresql":
+        return False
+    with connection.cursor() as cursor:
+        cursor.execute(
+            "SELECT EXISTS (SELECT FROM pg_locks WHERE NOT granted AND pg_backend_pid() = ANY(pg_blocking_pids(pid)))"
+        )
+        return bool(cursor.fetchone()[0])

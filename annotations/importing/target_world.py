@@ -23,7 +23,7 @@ def lock_world(name: str, by: User | None = None) -> World:
 
     To be called inside a transaction. ``by`` becomes the admin of a world that this makes.
     """
-    world, is_new = World.objects.select_for_update().get_or_create(name=name)
+    world, is_new = World.objects.hold().get_or_create(name=name)
     if is_new and by is not None:
         Membership.objects.create(world=world, user=by, role=Role.ADMIN)
     return world

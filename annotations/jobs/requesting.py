@@ -50,7 +50,7 @@ def request_job_once(
     Whoever asks at the same moment waits, and finds the job of whoever was first.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)
+        World.objects.hold().get(pk=world.pk)
         if (job := waiting.all().first()) is not None:
             return job, False
         return request_job(kind, world.name, by, arguments, queue=queue), True

@@ -159,7 +159,7 @@ def _store(
     with Staging(Utterance, COLUMNS) as staging:
         staging.add_new(rows)
         with transaction.atomic():
-            locked = World.objects.select_for_update().get(pk=world.pk)
+            locked = World.objects.hold().get(pk=world.pk)
             if upload is not None and Upload.objects.stored().filter(pk=upload.pk).exists():
                 return 0, known  # its form was sent twice, and the other one was first
             if _stamp_of_entities(locked) != entities or find_known(locked, new):

@@ -48,7 +48,7 @@ def mend_span(
         raise Refusal("Select the words that name the entity.", "no_words_selected")
     with transaction.atomic():
         # The world first, as whoever renames something holds it: nobody waits for the other then.
-        World.objects.select_for_update().get(pk=utterance.world_id)
+        World.objects.hold().get(pk=utterance.world_id)
         stored = hold_utterance(utterance, version, by)
         row = Entity.objects.select_for_update().get(pk=entity.pk)
         names = {name.casefold() for name in (row.text, *row.aliases)}

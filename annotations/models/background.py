@@ -14,6 +14,7 @@ from django.db.models.functions import Now
 from django.utils import timezone
 
 from annotations.models.people import User
+from annotations.models.short_texts import ShortTextField
 from annotations.models.worlds import Duty, World
 
 LEASE = timedelta(seconds=45 / settings.WORK_TEMPO)
@@ -94,10 +95,10 @@ class BackgroundWork(models.Model):
     attempt = models.PositiveIntegerField(default=0)
     resumes = models.PositiveSmallIntegerField(default=0)
     lease_until = models.DateTimeField(null=True, blank=True)
-    worker = models.CharField(max_length=200, blank=True)
+    worker = ShortTextField(max_length=200, blank=True)
     cancel_requested = models.BooleanField(default=False)
     progress = models.FloatField(default=0)
-    activity = models.CharField(max_length=200, blank=True)
+    activity = ShortTextField(max_length=200, blank=True)
     failure = models.TextField(blank=True)
     created_by = models.ForeignKey(
         settings.AUTH_USER_MODEL, null=True, blank=True, on_delete=models.SET_NULL

@@ -9,6 +9,7 @@ from annotations.models.campaigns import Contributor, ContributorKind
 from annotations.models.description import SemanticTemplate
 from annotations.models.editing import Editable
 from annotations.models.people import User
+from annotations.models.short_texts import ShortTextField
 from annotations.models.worlds import World
 
 MOST_CHARACTERS = 500  # of an utterance, and of a reason
@@ -191,7 +192,7 @@ class Upload(models.Model):
     file_name = models.CharField(max_length=MOST_CHARACTERS_OF_NAME, blank=True)
     content = models.BinaryField(default=bytes, blank=True)
     format = models.CharField(max_length=12, blank=True)
-    column = models.CharField(max_length=MOST_CHARACTERS_OF_NAME, blank=True)
+    column = ShortTextField(max_length=MOST_CHARACTERS_OF_NAME, blank=True)
     added = models.PositiveIntegerField(default=0)
     created_by = models.ForeignKey(
         User, null=True, blank=True, on_delete=models.SET_NULL, related_name="uploads"

@@ -11,6 +11,7 @@ from django.utils import timezone
 from simple_history.models import HistoricalRecords
 
 from annotations.models.people import User
+from annotations.models.short_texts import ShortTextField
 from annotations.models.worlds import Duty, World
 
 NEW = "new"
@@ -113,7 +114,7 @@ class Draft(models.Model):
     fields = models.JSONField(default=dict)
     base_version = models.PositiveIntegerField(null=True)
     device = models.CharField(max_length=LONGEST_DEVICE)
-    about = models.CharField(max_length=LONGEST_ABOUT, blank=True, default="")
+    about = ShortTextField(max_length=LONGEST_ABOUT, blank=True, default="")
     page = models.CharField(max_length=LONGEST_PAGE, blank=True, default="")
     saved_at = models.DateTimeField()
 

@@ -14,6 +14,8 @@ from django.contrib.sessions.base_session import AbstractBaseSession
 from django.db import models, transaction
 from django.utils import timezone
 
+from annotations.models.short_texts import ShortTextField
+
 
 class User(AbstractUser):
     """A person with an account. What they may do is said by their memberships, per world."""
@@ -106,7 +108,7 @@ class LogInSession(AbstractBaseSession):
     user = models.ForeignKey(
         User, null=True, on_delete=models.CASCADE, related_name="log_in_sessions"
     )
-    device = models.CharField(max_length=200, blank=True)
+    device = ShortTextField(max_length=200, blank=True)
     begun_at = models.DateTimeField(null=True)
 
     @classmethod

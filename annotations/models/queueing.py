@@ -24,6 +24,7 @@ from annotations.models.corpus import (
 )
 from annotations.models.description import SemanticTemplate
 from annotations.models.people import User
+from annotations.models.short_texts import ShortTextField
 from annotations.models.worlds import DUTIES, Duty, Membership, World
 
 LEASE = timedelta(minutes=30)
@@ -334,8 +335,8 @@ class WorkItem(models.Model):
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="work_items")
     kind = models.CharField(max_length=20, choices=work_kind_choices)
-    reason = models.CharField(max_length=LONGEST_REASON)
-    title = models.CharField(max_length=LONGEST_TITLE)
+    reason = ShortTextField(max_length=LONGEST_REASON)
+    title = ShortTextField(max_length=LONGEST_TITLE)
     utterance = models.ForeignKey(
         Utterance, null=True, blank=True, on_delete=models.CASCADE, related_name="work_items"
     )

@@ -16,6 +16,7 @@ from django.utils import timezone
 from annotations.language.recipes import default_book
 from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
+from annotations.models.short_texts import ShortTextField
 
 if TYPE_CHECKING:
     from annotations.language.predicates import Predicate
@@ -68,6 +69,13 @@ class WorldQuerySet(models.QuerySet["World"]):
             return None
         roles = [world.role for world in worlds] if user.is_active else []
         return worlds[0], frozenset(duty for role in roles for duty in DUTIES[role])
+
+    def hold(self) -> WorldQuerySet:
+        """Lock the worlds until the transaction ends, for one writer at a time.
+
+        Rows that refer to a world, such as an entry of the audit log, need not wait: the key of a held world stays.
+        """
+        return self.select_for_update(no_key=True)
 
     def present(self) -> WorldQuerySet:
         """Leave out those that are being deleted."""
@@ -300,9 +308,9 @@ class AuditEntry(models.Model):
         settings.AUTH_USER_MODEL, null=True, on_delete=models.SET_NULL, related_name="+"
     )
     who_name = models.CharField(max_length=150)
-    through = models.CharField(max_length=80, blank=True)
-    what = models.CharField(max_length=80)
-    subject = models.CharField(max_length=200, blank=True)
+    through = ShortTextField(max_length=80, blank=True)
+    what = ShortTextField(max_length=80)
+    subject = ShortTextField(max_length=200, blank=True)
     at = models.DateTimeField(default=timezone.now)
 
     class Meta:

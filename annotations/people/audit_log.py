@@ -23,7 +23,6 @@ logger = logging.getLogger(__name__)
 COMMAND_LINE, RULE = "command line", "rule"
 MOST_AT_ONCE = 5_000  # entries that are deleted in one transaction
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
-MOST_SUBJECT_CHARACTERS = 200
 # Routes that are posted to and change nothing that others see; and contributors of campaigns, who are known by
 # a pseudonym alone also where they are logged in.
 UNRECORDED = re.compile(
@@ -169,8 +168,8 @@ def record(request: HttpRequest, response: HttpResponse) -> AuditEntry | None:
         who=request.user,
         who_name=request.user.get_username(),
         through=token.name if isinstance(token, ApiToken) else "",
-        what=_what(request, match)[:80],
-        subject=subject[:MOST_SUBJECT_CHARACTERS],
+        what=_what(request, match),
+        subject=subject,
     )
 
 
@@ -184,8 +183,8 @@ def record_command(
                 world=world,
                 world_name=world.name if world else "",
                 who_name=who,
-                what=what[:80],
-                subject=subject[:MOST_SUBJECT_CHARACTERS],
+                what=what,
+                subject=subject,
             )
     except DatabaseError:
         logger.exception("An entry of the audit log could not be written.")

@@ -80,7 +80,7 @@ def set_roles(world: World, user: User, roles: Collection[str], by: User) -> dic
         NoAdminLeft: the last admin would lose that role. Administrators of the site, who see every
             world, may do that all the same.
     """
-    World.objects.select_for_update().get(pk=world.pk)
+    World.objects.hold().get(pk=world.pk)
     world.memberships.filter(user=user).exclude(role__in=roles).delete()
     add_roles(world, user, roles)
     if not admins_of(world) and not by.is_superuser:

@@ -78,7 +78,7 @@ def take_back(change: PeopleChange, by: User) -> str:
         CannotTakeBack: somebody has changed the roles since, or the invitation is open or was withdrawn once more.
         NoAdminLeft: the last admin would lose that role.
     """
-    World.objects.select_for_update().get(pk=change.world.pk)
+    World.objects.hold().get(pk=change.world.pk)
     said = "The invitation is open again."
     if member := change.member:
         if roles_of(change.world, member) != list(change.after):

@@ -22,7 +22,7 @@ from annotations.models import (
 )
 from annotations.models.corpus import UtteranceStatus
 from annotations.models.description import TemplateStatus
-from annotations.models.queueing import DRAWS, LONGEST_REASON, LONGEST_TITLE, PRIORITIES, WorkKind
+from annotations.models.queueing import DRAWS, PRIORITIES, WorkKind
 from annotations.rows.synchronise import batches
 
 # An adjudication compares two labels already, and a dispute is settled by one person.
@@ -119,8 +119,8 @@ def _make_item(
     return WorkItem(
         world=world,
         kind=kind,
-        reason=wanted.reason[:LONGEST_REASON],
-        title=title_of(wanted.subject)[:LONGEST_TITLE],
+        reason=wanted.reason,
+        title=title_of(wanted.subject),
         priority=PRIORITIES[kind],
         people=people,
         places=people,
@@ -193,5 +193,5 @@ def ask_about(world: World, subject: ItemSubject, reason: str, by: User) -> bool
     """Put ``subject`` into the queue, as people read it there. False where somebody is asked already."""
     wanted = [WantedItem(subject, f"{by} asks: {reason}")]
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)  # one asks at a time
+        World.objects.hold().get(pk=world.pk)  # one asks at a time
         return bool(enqueue(world, WorkKind.REQUESTED, wanted, by=by))

@@ -15,7 +15,6 @@ from annotations.models.corpus import Verdict
 from annotations.models.queueing import (
     FREE_AGAIN,
     LEASE,
-    LONGEST_REASON,
     OCCUPYING,
     PRIORITIES,
     Outcome,
@@ -166,7 +165,7 @@ def _follow(item: WorkItem, kind: WorkKind, reason: str) -> WorkItem:
         defaults={
             "world": item.world,
             "title": item.title,
-            "reason": reason[:LONGEST_REASON],
+            "reason": reason,
             "priority": PRIORITIES[kind],
             "follows": item,
         },

@@ -11,6 +11,7 @@ from django.db import models, transaction
 from annotations.editing.edits import change_many, hold
 from annotations.generation.template_problems import check_unready_templates
 from annotations.language.english import say_count
+from annotations.language.errors import LanguageError
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -75,9 +76,24 @@ def touched_by(row: Editable, old: str, new: str) -> tuple[TouchedRows, ...]:
     """
     plan = PLANS[type(row)](row, old)
     plan.require_free(new)
-    return tuple(
+    touched = tuple(
         TouchedRows(noun, tuple(changes)) for noun, changes in plan.changes(new) if changes
     )
+    for each in touched:
+        for changed, values in each.changes:
+            _require_fits(each.noun, changed, values)
+    return touched
+
+
+def _require_fits(noun: str, row: models.Model, values: Mapping[str, Any]) -> None:
+    """Raise LanguageError where a text with the new name is longer than its column."""
+    for name, value in values.items():
+        longest = getattr(row._meta.get_field(name), "max_length", None)
+        if isinstance(value, str) and longest and len(value) > longest:
+            raise LanguageError(
+                f"the {name} of the {noun} “{str(row)[:60]}” would have {len(value):,} characters",
+                hint=f"{longest:,} is the limit; choose a shorter name",
+            )
 
 
 def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[TouchedRows, ...]:
@@ -90,7 +106,7 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
         LanguageError: as ``touched_by``.
     """
     with transaction.atomic():
-        world = World.objects.select_for_update().get(pk=row.owning_world.pk)
+        world = World.objects.hold().get(pk=row.owning_world.pk)
         stored = hold(row, version, by)
         touched = touched_by(stored, old, new)
         changes = [change for each in touched for change in each.changes]

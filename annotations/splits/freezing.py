@@ -58,7 +58,7 @@ def freeze_split(
         ) as prepared,
         transaction.atomic(),
     ):
-        World.objects.select_for_update().get(pk=world.pk)
+        World.objects.hold().get(pk=world.pk)
         frozen, is_new = prepared.store(world, by)
     if must_be_new and not is_new:
         raise LanguageError(f"there is a split {name} already", hint="choose another name")

@@ -91,7 +91,7 @@ def freeze_anew(old: Split, by: User | None = None) -> Split:
         old.tests_on_models,
     )
     with prepared, transaction.atomic():
-        World.objects.select_for_update().get(pk=old.world_id)
+        World.objects.hold().get(pk=old.world_id)
         _require_last(old)  # nobody has done the same meanwhile
         return prepared.store(old.world, by)[0]
 

@@ -68,7 +68,7 @@ def restore_utterances(rows: models.QuerySet[Utterance], by: User) -> tuple[int,
     n_restored = 0
     with transaction.atomic():
         if deleted:  # who collects holds the world too, so that no text is added meanwhile
-            World.objects.select_for_update().get(pk=deleted[0][2])
+            World.objects.hold().get(pk=deleted[0][2])
         times = {at for _, at, _ in deleted if at}
         for at in sorted(times, reverse=True):  # of equal texts the newest
             for some in batches([key for key, when, _ in deleted if when == at], BATCH):
@@ -104,7 +104,7 @@ def restore(entry: Any, by: User) -> models.Model:
     """
     with transaction.atomic():
         # The world first, as whoever names an entity in the text holds it: nobody waits for the other then.
-        World.objects.select_for_update().get(pk=entry.world_id)
+        World.objects.hold().get(pk=entry.world_id)
         row = Utterance.with_deleted.select_for_update().get(pk=entry.id)
         if row.deleted_at is None:
             return restore_utterance(entry, by)

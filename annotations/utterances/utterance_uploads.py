@@ -191,7 +191,7 @@ def keep_waiting(world: World, data: bytes, file_name: str, by: User) -> Upload:
 def store(world: World, shown: Preview, upload: Upload, by: User) -> CollectedTexts:
     """Store what a preview has shown, as one upload. ``upload`` may be unsaved."""
     upload.world, upload.created_by = world, by
-    upload.format, upload.column = shown.sheet.format, shown.sheet.column[:MOST_CHARACTERS_OF_NAME]
+    upload.format, upload.column = shown.sheet.format, shown.sheet.column
     origin = Origin.UPLOADED if upload.file_name else Origin.PASTED
     return collect(world, shown.texts, origin, by, upload, shown.forms)
 

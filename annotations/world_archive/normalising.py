@@ -59,7 +59,7 @@ def normalise_world(world: World, is_dry_run: bool = False) -> NormalisedWorld:
     changed: set[type[models.Model]] = set()
     makes_commands = False
     with transaction.atomic():
-        world = World.objects.select_for_update().get(pk=world.pk)
+        world = World.objects.hold().get(pk=world.pk)
         description = normalise_record(world.description)
         if description != world.description:
             World.objects.filter(pk=world.pk).update(description=description)

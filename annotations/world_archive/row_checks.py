@@ -16,6 +16,7 @@ from annotations.language.predicates import is_entity_kind
 from annotations.language.symbols import is_token
 from annotations.language.templates import SampleNote
 from annotations.models import Primitive, Recipe
+from annotations.rows.column_values import as_json, from_json
 from annotations.rows.stored_problems import is_stored_problems
 from annotations.world_archive.archive_tables import ArchiveTable
 
@@ -41,15 +42,6 @@ FORMS = {
 }
 # References that archives of earlier releases do not have, by table.
 ADDED_REFERENCES = {"splits": {"follows"}, "paraphrases": {"contributor"}}
-TYPES: tuple[tuple[type[models.Field[Any, Any]], type | tuple[type, ...], str], ...] = (
-    (models.CharField, str, "a text"),
-    (models.TextField, str, "a text"),
-    (models.BooleanField, bool, "true or false"),
-    (models.FloatField, (int, float), "a number"),
-    (models.IntegerField, int, "a whole number"),
-    (models.DecimalField, str, "a number in quotation marks"),
-    (models.DateTimeField, str, "a time"),
-)
 
 
 def parse_object(line: bytes, place: Position) -> dict[str, Any]:
@@ -111,8 +103,10 @@ def check_value(
 
     ``shapes`` says what JSON columns may hold; by default, that of our own tables.
     """
-    if value is None and column.null:
-        return
+    if value is None:
+        if column.null:
+            return
+        raise LanguageError(f"{column.name} is missing", place)
     if isinstance(column, models.JSONField):
         if not (shapes or SHAPES)[column.name](value):
             raise LanguageError(f"{column.name} has the wrong shape", place)
@@ -120,14 +114,16 @@ def check_value(
         for name in value if is_list_of_files else ():
             _check_file_name(name, place)
         return
-    of_type, kind = next((types, kind) for field, types, kind in TYPES if isinstance(column, field))
-    is_mistaken_bool = isinstance(value, bool) and of_type is not bool
-    if is_mistaken_bool or not isinstance(value, of_type):
-        raise LanguageError(f"{column.name} is not {kind}", place)
-    if column.choices and value not in {choice for choice, _ in column.flatchoices}:
-        raise LanguageError(f"{column.name} cannot be “{str(value)[:40]}”", place)
     try:
-        column.run_validators(column.to_python(value))
+        read = from_json(column, value)
+        # A number may be written whole; nothing else is read from another type of JSON.
+        written = as_json(column, read)
+        is_whole = isinstance(written, float) and type(value) is int
+        if type(written) is not type(value) and not is_whole:
+            raise LanguageError(f"{column.name} cannot be {str(value)[:40]}", place)
+        if column.choices and value not in {choice for choice, _ in column.flatchoices}:
+            raise LanguageError(f"{column.name} cannot be “{str(value)[:40]}”", place)
+        column.run_validators(read)
     except ValidationError as error:
         raise LanguageError(f"{column.name}: {' '.join(error.messages)}", place) from error
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Iterable, Iterator
-from datetime import datetime
 from typing import Any
 
 from django.db.models import Count
@@ -17,6 +16,7 @@ from annotations.importing.zip_archives import MANIFEST
 from annotations.language.corpus import PART_FILES, TRIPLES_FILE
 from annotations.models import Duty, User, World
 from annotations.models.corpus import LabelQuerySet
+from annotations.rows.column_values import as_json
 from annotations.rows.history import what_happened
 from annotations.rows.row_kinds import KINDS, EditableKind
 from annotations.rows.synchronise import batches
@@ -100,11 +100,6 @@ def _member(
             yield target.take()
 
 
-def _as_json(value: Any) -> str:
-    """Write a time or a decimal number as text."""
-    return value.isoformat() if isinstance(value, datetime) else str(value)
-
-
 def _lines(
     table: ArchiveTable, world: World, numbers: Numbers, blind: User | None, may_review: bool
 ) -> Iterator[str]:
@@ -119,7 +114,7 @@ def _lines(
     known = numbers[table.name]
     for number, row in enumerate(rows.select_related(*table.people).iterator(chunk_size=CHUNK)):
         known[row.pk] = number
-        values = {each.name: getattr(row, each.attname) for each in table.columns}
+        values = {each.name: as_json(each, getattr(row, each.attname)) for each in table.columns}
         for name, other in table.references.items():
             key = getattr(row, f"{name}_id")
             values[name] = numbers[other].get(key)
@@ -133,7 +128,7 @@ def _lines(
         for name in table.people:
             person = getattr(row, name)
             values[name] = person.username if person else None
-        yield json.dumps(values, ensure_ascii=False, default=_as_json) + "\n"
+        yield json.dumps(values, ensure_ascii=False) + "\n"
 
 
 def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
@@ -156,13 +151,14 @@ def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
 
 
 def _history_lines(kind: EditableKind, entries: Any) -> Iterator[str]:
+    columns = [kind.model._meta.get_field(name) for name in kind.model.edited_fields]
     for entry in entries.iterator(chunk_size=CHUNK):
         values = {
             "row": entry.id,
             "version": entry.version,
             "what": what_happened(entry),
             "by": str(entry.history_user or ""),
-            "at": entry.history_date,
-            **{name: getattr(entry, name) for name in kind.model.edited_fields},
+            "at": entry.history_date.isoformat(),
+            **{each.name: as_json(each, getattr(entry, each.attname)) for each in columns},
         }
-        yield json.dumps(values, ensure_ascii=False, default=_as_json) + "\n"
+        yield json.dumps(values, ensure_ascii=False) + "\n"

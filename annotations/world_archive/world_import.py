@@ -32,6 +32,7 @@ from annotations.models import (
     World,
 )
 from annotations.models.worlds import Role
+from annotations.rows.column_values import from_json
 from annotations.rows.from_rows import annotated_categories, classes_of, predicates_of
 from annotations.rows.rows_in_words import rows_in_words
 from annotations.rows.stored_problems import as_json
@@ -270,8 +271,8 @@ class _Loader:
         return read
 
     def _row(self, table: ArchiveTable, values: dict[str, Any], place: Position) -> models.Model:
-        columns = [each.name for each in table.columns if each.name in values]
-        row = table.model(**{name: values[name] for name in columns})
+        columns = [each for each in table.columns if each.name in values]
+        row = table.model(**{each.name: from_json(each, values[each.name]) for each in columns})
         if table.owner:
             owner = (
                 self._world if table.owner == "world" else getattr(self._world, table.owner, None)

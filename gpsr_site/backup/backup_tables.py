@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from datetime import date, datetime
+from dataclasses import dataclass, field
 from math import isfinite, isnan
 from typing import Any
 
@@ -21,6 +19,7 @@ from django.db.models import JSONField
 from annotations.language.errors import Refusal
 from annotations.language.text import has_half_character
 from annotations.models import LogInSession
+from annotations.rows.column_values import as_json, from_json
 
 APPS = ("annotations", "parser_service")
 # Of single sign-on, where it is set up.
@@ -35,9 +34,13 @@ DEEPEST = 500  # levels of a JSON value: Python reads and writes about a thousan
 
 @dataclass(frozen=True)
 class BackupTable:
-    """A model with the columns of its rows, in the order of the model."""
+    """A model with the columns of its rows, in the order of the model.
+
+    ``limits`` are fields that bound a column more narrowly than those of the model, by ``attname``.
+    """
 
     model: type[models.Model]
+    limits: Mapping[str, models.Field[Any, Any]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -57,11 +60,13 @@ class BackupTable:
         Raises:
             Unportable: a row holds what not every database can hold.
         """
-        names = [field.attname for field in self.fields]
+        fields = self.fields
+        names = [field.attname for field in fields]
         rows = self.model._base_manager.using(using).order_by("pk").values_list(*names)
         for row in rows.iterator(chunk_size=CHUNK):
             self._require_portable(row)
-            yield json.dumps(row, sort_keys=True, separators=(",", ":"), default=_to_json) + "\n"
+            values = [as_json(*each) for each in zip(fields, row, strict=True)]
+            yield json.dumps(values, sort_keys=True, separators=(",", ":")) + "\n"
 
     def values(self, line: bytes, connection: BaseDatabaseWrapper) -> list[Any]:
         """Return the values of a line as ``connection`` stores them.
@@ -79,21 +84,27 @@ class BackupTable:
             raise Refusal(said, "other_columns")
         self._require_portable(row)
         values = []
-        for field, value in zip(self.fields, row, strict=True):
+        for column, value in zip(self.fields, row, strict=True):
             try:
-                values.append(_to_column(field, value, connection))
-            except (ValueError, TypeError, ValidationError) as error:
-                raise Unportable(self, row, field, "holds a value of another type") from error
+                values.append(_to_column(column, value, connection))
+            except ValidationError as error:
+                raise Unportable(self, row, column, "holds a value of another type") from error
         return values
 
     def _require_portable(self, row: Sequence[Any]) -> None:
-        for field, value in zip(self.fields, row, strict=True):
-            if fault := fault_of(field, value):
-                raise Unportable(self, row, field, fault)
+        if fault := self.fault(row):
+            raise fault
+
+    def fault(self, row: Sequence[Any]) -> Unportable | None:
+        """Return why not every database can hold ``row``; None where each can."""
+        for column, value in zip(self.fields, row, strict=True):
+            if fault := fault_of(self.limits.get(column.attname, column), value):
+                return Unportable(self, row, column, fault)
+        return None
 
 
 class Unportable(Refusal):
-    """A row holds what not every database can hold; the sentence names model, row and column."""
+    """A row holds what not every database can hold; the sentence names model, row and column, ``remedy`` the SQL."""
 
     code = "not_portable"
 
@@ -102,6 +113,10 @@ class Unportable(Refusal):
     ) -> None:
         place = [each.primary_key for each in table.fields].index(True)
         super().__init__(f"{table.name}, row {row[place]}: {field.column} {fault}.")
+        self.remedy = (
+            f"(UPDATE {table.model._meta.db_table} SET {field.column} = … "
+            f"WHERE {table.fields[place].column} = {row[place]!r};)"
+        )
 
 
 def fault_of(field: models.Field[Any, Any], value: Any) -> str:
@@ -196,18 +211,7 @@ def snapshot() -> Iterator[str]:
         del connections[SNAPSHOT]
 
 
-def _to_json(value: Any) -> str:
-    if isinstance(value, datetime | date):
-        return value.isoformat()
-    if isinstance(value, bytes | memoryview):
-        return base64.b64encode(bytes(value)).decode()
-    raise TypeError(f"A backup cannot hold a {type(value).__name__}.")
-
-
 def _to_column(field: models.Field[Any, Any], value: Any, connection: BaseDatabaseWrapper) -> Any:
-    if isinstance(field, JSONField):
-        if value is None and not field.null:  # JSON's null, which is a value
-            return connection.ops.adapt_json_value(None, field.encoder)
-    else:
-        value = field.to_python(value)
-    return field.get_db_prep_value(value, connection, prepared=False)
+    if isinstance(field, JSONField) and value is None and not field.null:  # JSON's null, a value
+        return connection.ops.adapt_json_value(None, field.encoder)
+    return field.get_db_prep_value(from_json(field, value), connection, prepared=False)

@@ -16,6 +16,7 @@ from annotations.language.errors import Refusal
 from annotations.rows.synchronise import batches
 from gpsr_site.backup.backup_manifest import NAME, BackupManifest, BackupPart, newest_migrations
 from gpsr_site.backup.backup_tables import BackupTable, snapshot, tables
+from gpsr_site.backup.unfit_rows import say_unfit_rows
 from parser_service.models import TrainingRun
 
 FILE_CHUNK = 1024 * 1024
@@ -35,7 +36,11 @@ def write_backup(path: Path, say: Say = lambda sentence: None) -> BackupManifest
     if path.exists():
         said = f"{path} exists. Choose another name, or remove it first."
         raise Refusal(said, "file_exists")
-    manifest = BackupManifest(timezone.now().isoformat(), connection.vendor, newest_migrations())
+    try:
+        migrations = newest_migrations()
+    except Refusal as error:  # perhaps since a migration met rows that do not fit
+        raise Refusal(say_unfit_rows() or error.message, error.code) from error
+    manifest = BackupManifest(timezone.now().isoformat(), connection.vendor, migrations)
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
     # It holds the hashes of passwords and tokens.
     descriptor = os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)

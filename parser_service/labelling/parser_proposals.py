@@ -71,7 +71,7 @@ def _answer_command(
     (answers,) = parser.predict([command], BEAM_WIDTH, progress.check)
     made = [CommandProposal(world=world, command=command, **each) for each in _rows(answers, run)]
     with progress.writing():
-        World.objects.select_for_update().get(pk=world.pk)  # one of two jobs waits
+        World.objects.hold().get(pk=world.pk)  # one of two jobs waits
         world.command_proposals.filter(command=command).delete()
         CommandProposal.objects.bulk_create(made)
     return {"proposed": 1, "parser": run.parser, "run": run.pk, "command": command}

@@ -6,6 +6,7 @@ from django.db import models
 from django.utils import timezone
 
 from annotations.models import Example
+from annotations.models.short_texts import ShortTextField
 from annotations.models.splits import part_choices
 from parser_service.models.runs import TrainingRun
 
@@ -58,8 +59,8 @@ class Probe(models.Model):
         Example, null=True, blank=True, on_delete=models.CASCADE, related_name="probes"
     )
     utterance = models.TextField(blank=True)
-    old = models.CharField(max_length=300, blank=True)
-    new = models.CharField(max_length=300, blank=True)
+    old = ShortTextField(max_length=300, blank=True)
+    new = ShortTextField(max_length=300, blank=True)
     expectation = models.CharField(max_length=8, choices=expectation_choices)
     expected_form = models.TextField(blank=True)
 

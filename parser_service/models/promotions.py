@@ -6,6 +6,7 @@ from django.db import models
 from django.utils import timezone
 
 from annotations.models import User, World
+from annotations.models.short_texts import ShortTextField
 from parser_service.models.runs import TrainingRun
 
 
@@ -56,7 +57,7 @@ class Promotion(models.Model):
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="promotions")
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="promotions")
     state = models.CharField(max_length=10, choices=promotion_state_choices)
-    reason = models.CharField(max_length=500, blank=True)
+    reason = ShortTextField(max_length=500, blank=True)
     evidence = models.JSONField(default=dict)
     made_at = models.DateTimeField(default=timezone.now)
     decided_at = models.DateTimeField(null=True, blank=True)

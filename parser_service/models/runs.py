@@ -12,6 +12,7 @@ from annotations.models import Split, World
 from annotations.models.background import BackgroundWork, Status, WorkQuerySet
 from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
+from annotations.models.short_texts import ShortTextField
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import PARSERS, config_fields
@@ -98,7 +99,7 @@ class TrainingRun(BackgroundWork):
     parameters = models.PositiveBigIntegerField(null=True, blank=True)
     seconds_trained = models.FloatField(default=0)
     score_kind = models.CharField(max_length=20, choices=score_kind_choices, blank=True)
-    answered_by = models.CharField(max_length=200, blank=True)
+    answered_by = ShortTextField(max_length=200, blank=True)
 
     objects = TrainingRunQuerySet.as_manager()  # type: ignore[misc]  # of the class, as that of the base is
 

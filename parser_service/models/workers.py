@@ -8,6 +8,8 @@ from datetime import timedelta
 from django.db import models
 from django.utils import timezone
 
+from annotations.models.short_texts import ShortTextField
+
 # The parent process of a worker writes its row every 5 s. Pages ask every 2 s: ten seconds after a
 # worker's end every page says so.
 ALIVE_FOR = timedelta(seconds=7.5)
@@ -23,8 +25,8 @@ class WorkerQuerySet(models.QuerySet["Worker"]):
 
 
 class Worker(models.Model):
-    name = models.CharField(max_length=200, unique=True)
-    host = models.CharField(max_length=200)
+    name = ShortTextField(max_length=200, unique=True)
+    host = ShortTextField(max_length=200)
     process_id = models.PositiveIntegerField()
     queue = models.CharField(max_length=20)  # those that it serves, with commas between them
     started_at = models.DateTimeField(default=timezone.now)

@@ -106,7 +106,7 @@ def _split_of(world: World, criterion: str, examples: list[Example], by: User) -
     """Return the split that has just these examples; a new one where there is none."""
     stem = f"people-models-{'form' if criterion == Criterion.LOGICAL_FORM else 'source'}"
     with PreparedSplit(stem, criterion, examples, 0) as prepared, transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)
+        World.objects.hold().get(pk=world.pk)
         same = world.splits.filter(content_hash=prepared.content_hash, criterion=criterion).first()
         if same is not None:
             return same

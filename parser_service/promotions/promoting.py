@@ -142,7 +142,7 @@ def decline(world: World, pk: int, by: User) -> Promotion:
 def _deciding(world: World) -> Iterator[None]:
     """Let one decision about a world be made at a time."""
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)
+        World.objects.hold().get(pk=world.pk)
         yield
 
 

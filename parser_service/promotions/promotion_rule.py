@@ -36,7 +36,7 @@ def consider(run: TrainingRun) -> Promotion | None:
     if why_not(run):
         return None
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=run.world_id)
+        World.objects.hold().get(pk=run.world_id)
         present = run.world.promotions.promoted().select_related("run__split").first()
         is_for_people = run.parser in needing(Needs.SERVER)
         if present is None or not is_learned(present.run):

@@ -49,7 +49,7 @@ def add_category(
     Raises Refusal where there is one of that name.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=world.pk)
+        World.objects.hold().get(pk=world.pk)
         _require_free(world, name)
         last = world.error_categories.aggregate(last=Max("position"))["last"]
         return ErrorCategory.objects.create(
@@ -70,7 +70,7 @@ def change_category(
     Raises Refusal where another one has the name.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=category.world_id)
+        World.objects.hold().get(pk=category.world_id)
         _require_free(category.world, name, but=category)
         category.name, category.description, category.slice = name, description, of_slice
         category.save(update_fields=["name", "description", "slice"])
@@ -79,7 +79,7 @@ def change_category(
 def move_category(category: ErrorCategory, step: int) -> None:
     """Exchange a category with the one before (-1) or after (1); the first and the last stay."""
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=category.world_id)
+        World.objects.hold().get(pk=category.world_id)
         rows = list(category.world.error_categories.all())
         at = next(place for place, row in enumerate(rows) if row.pk == category.pk)
         to = min(max(at + step, 0), len(rows) - 1)
@@ -95,7 +95,7 @@ def delete_category(category: ErrorCategory, move_to: ErrorCategory | None) -> i
     Raises Refusal where it has reviews and none is named, or it is the last one.
     """
     with transaction.atomic():
-        World.objects.select_for_update().get(pk=category.world_id)
+        World.objects.hold().get(pk=category.world_id)
         if not category.world.error_categories.exclude(pk=category.pk).exists():
             raise Refusal(
                 "A world keeps at least one error category.",

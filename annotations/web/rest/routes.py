@@ -76,7 +76,7 @@ class WorldRoute(Route):
 
     def hold_world(self) -> None:
         """Read and lock the world until the end of the transaction. Raises Http404 if it is gone."""
-        held = World.objects.present().select_for_update().filter(pk=self.world.pk).first()
+        held = World.objects.present().hold().filter(pk=self.world.pk).first()
         if held is None:
             raise Http404("There is no such world.")
         self.world = held

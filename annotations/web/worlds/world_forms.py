@@ -78,9 +78,7 @@ class WorldForm(forms.ModelForm):  # type: ignore[type-arg]  # generic in the st
     def _let_jobs_follow(self) -> bool:
         """Tell jobs the new name: what was asked is answered in this world, and never in a later one that takes the
         old name. Return False, with an error, while any is active."""
-        World.objects.select_for_update().get(
-            pk=self.instance.pk
-        )  # an import holds it while it writes
+        World.objects.hold().get(pk=self.instance.pk)  # an import holds it while it writes
         jobs = Job.objects.filter(world=self.instance)
         if jobs.active().exists():
             self.add_error("name", AT_WORK)

@@ -117,7 +117,7 @@ def world_edit(request: PageRequest, world: str) -> HttpResponseBase:
 def _edit_world(request: WorldRequest, world: World) -> HttpResponse:
     with transaction.atomic():
         # The frame goes on showing ``world``; of two admins who save at once, one is first.
-        stored = World.objects.select_for_update().get(pk=world.pk)
+        stored = World.objects.hold().get(pk=world.pk)
         before = stored.name
         form = WorldEditForm(stored, request.user, posted(request))
         is_saved = form.is_bound and form.is_valid() and form.change()

@@ -29,7 +29,6 @@ MOST_EDITED = 200  # utterances, one edit of each kind
 MOST_OF_A_KIND = 40  # shuffled, truncated and unrelated texts
 MOST_SHORTENED = 60  # utterances, which lose each of their words in turn
 MOST_COMMANDS = 5_000  # generated ones that say what a change of words does to the form
-_LONGEST = 300  # characters of what is replaced
 _COLUMNS = tuple(
     field.column for field in Probe._meta.concrete_fields if field.column and not field.primary_key
 )
@@ -100,8 +99,8 @@ def _edits(bases: Sequence[Example], facts: WorldFacts, progress: Progress) -> I
                 kind=edit.kind,
                 base=base,
                 utterance=edit.text,
-                old=edit.old[:_LONGEST],
-                new=edit.new[:_LONGEST],
+                old=edit.old,
+                new=edit.new,
                 expectation=Expectation.SAME if edit.kind.keeps_meaning else Expectation.CHANGED,
                 expected_form=canonical_text(edit.form),
             )
@@ -115,6 +114,6 @@ def _removals(bases: Sequence[Example]) -> Iterator[Probe]:
             kind=REMOVAL,
             base=shortened[int(place)],
             utterance=text,
-            old=(" ".join(words_of(word)) or word)[:_LONGEST],  # without its punctuation
+            old=" ".join(words_of(word)) or word,  # without its punctuation
             expectation=Expectation.OPEN,
         )

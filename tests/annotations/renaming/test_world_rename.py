@@ -16,6 +16,7 @@ from annotations.models import (
     Paraphrase,
     Predicate,
     Production,
+    Recipe,
     SemanticTemplate,
     TaskCategory,
     World,
@@ -194,3 +195,14 @@ def test_the_page_shows_what_changes_and_renames(home, anna, rene):
     assert "Renamed in 1 predicate, 1 template, 1 paraphrase." in answer.content.decode()
     assert Predicate.objects.get(pk=row.pk).name == "locate"
     assert anna.get("/w/home/rename/template/1/").status_code == 404
+
+
+def test_a_name_with_which_a_text_is_too_long_changes_nothing(world, annotator):
+    primitive = world.primitives.get(name="say")
+    calls = ", ".join([f'{primitive.name}("{number:03} {"x" * 25}")' for number in range(25)])
+    columns = Recipe.columns_of(f"wave() -> {calls}")
+    recipe = add(Recipe(world=world, position=99, **columns), annotator)
+    with pytest.raises(LanguageError):
+        rename(primitive, primitive.name, "say_aloud_" * 6, annotator, primitive.version)
+    recipe.refresh_from_db()
+    assert recipe.text == columns["text"]

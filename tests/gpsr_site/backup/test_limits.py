@@ -11,17 +11,21 @@ from pathlib import Path
 
 import pytest
 from django.apps import apps
+from django.core.checks import ERROR
+from django.core.checks.registry import registry
+from django.core.serializers.json import DjangoJSONEncoder
 from django.db import DatabaseError, connection, models, transaction
 
 from annotations.models import Predicate, SemanticTemplate, User
 from annotations.models.worlds import Role
+from gpsr_site.backup.backup_checks import CODE, check_column, check_columns
 from gpsr_site.backup.backup_manifest import NAME
 from gpsr_site.backup.backup_reading import restore
 from gpsr_site.backup.backup_tables import fault_of, tables
 from tests.annotations.commands.run_command import run, run_process
 from tests.conftest import member
 from tests.filled_world import leave_traces
-from tests.gpsr_site.backup.limits import at_the_limit, beyond_the_limit
+from tests.gpsr_site.backup.limits import beyond_the_limit, fill_every_column
 from tests.gpsr_site.backup.test_round_trip import backup_of, changed, small, var
 from tests.migrated import copy_installation
 
@@ -85,28 +89,12 @@ def test_nothing_beyond_a_limit_can_be_stored(traces):
     assert len(tried) > 30
 
 
-# Puts each column of one row of each model at its limit, in an installation on SQLite.
+# Fills each column of each model, in an installation on SQLite.
 FILL = """
 from pathlib import Path
-from django.db import transaction
-from annotations.models import World
-from annotations.models.worlds import Role
 from gpsr_site.backup.backup_writing import write_backup
-from gpsr_site.backup.backup_tables import tables
-from tests.conftest import member
-from tests.filled_world import leave_traces
-from tests.gpsr_site.backup.limits import at_the_limit
-from tests.sample_world import fill_world
-world = World.objects.create(name="home")
-fill_world(world)
-with transaction.atomic():
-    leave_traces(world, member(world, "anna", Role.ANNOTATOR), member(world, "adam", Role.ADMIN))
-for table in tables():
-    row = table.model._base_manager.order_by("pk").first()
-    if row is not None:
-        values = {field.name: at_the_limit(field) for field in table.fields}
-        values = {name: value for name, value in values.items() if value is not None}
-        table.model._base_manager.filter(pk=row.pk).update(**values)
+from tests.gpsr_site.backup.limits import fill_every_column
+fill_every_column()
 write_backup(Path(PATH))
 """
 
@@ -123,14 +111,49 @@ def test_rows_at_every_limit_go_to_the_other_database_and_back(
     restore(one)
     rows, _ = backup_of(two)
     assert rows == rows_of(one)
-    assert User.objects.order_by("pk").first().username == at_the_limit(
-        User._meta.get_field("username")
-    )
+    assert {count for count, _ in rows.values()} == {3}
+    assert len(User.objects.get(pk=1).username) == 150
     newer = copy_installation(migrated_database, tmp_path / "newer")
     for command in (("restore", two), ("backup", three)):
         done = run_process(newer, *command)
         assert done.returncode == 0, done.stderr
     assert rows_of(three) == rows
+
+
+def test_every_column_of_every_model_comes_back(transactional_db, var, tmp_path):
+    fill_every_column()
+    before = contents()
+    rows, _ = backup_of(tmp_path / "one.zip")
+    restore(tmp_path / "one.zip", replace=True)
+    assert contents() == before
+    assert backup_of(tmp_path / "two.zip")[0] == rows
+
+
+def contents() -> dict[str, list[dict]]:
+    """Every value of every row; bytes as bytes, whatever the database's driver gives."""
+    return {
+        table.name: [
+            {
+                key: bytes(value) if isinstance(value, memoryview) else value
+                for key, value in row.items()
+            }
+            for row in table.model._base_manager.order_by("pk").values()
+        ]
+        for table in tables()
+    }
+
+
+class Bits(models.Field):
+    """A column of a type of our own that does not read what it writes."""
+
+
+def test_a_column_that_no_backup_can_hold_stops_the_start():
+    assert not check_columns()
+    for field in (Bits(), models.FileField(), models.JSONField(encoder=DjangoJSONEncoder)):
+        field.set_attributes_from_name("odd")
+        (error,) = check_column(field)
+        assert (error.id, error.level) == (CODE, ERROR) and error.hint
+    assert check_columns in registry.registered_checks
 
 
 def rows_of(path: Path) -> dict[str, tuple[int, str]]:

@@ -177,7 +177,7 @@ def locked(world: World) -> Iterator[None]:
 
     def write() -> None:
         with transaction.atomic():
-            World.objects.select_for_update().get(pk=world.pk)
+            World.objects.hold().get(pk=world.pk)
             is_locked.set()
             let_go.wait(PATIENCE_SECONDS)
         connection.close()

@@ -127,3 +127,15 @@ def test_no_parser_is_asked_about_a_command_beyond_the_column(sample, annotator)
     assert suggested.command == "" and not Job.objects.filter(kind=JobKind.PROPOSE).exists()
     longest = suggest(sample.world, "{object} " * 55, annotator)
     assert len(longest.command) == 55 * len("<object> ") - 1
+
+
+@pytest.mark.services
+def test_a_long_pattern_ends_no_job(transactional_db, sample, anna, settings, tmp_path):
+    settings.VAR_DIR = tmp_path
+    train(lifecycle.claim("a worker", "quick", ask(sample.split, train_sources="gen", seed=1)))
+    for how_many in (54, 55, 56, 60, 400):
+        assert anna.post(ADDRESS, {"pattern": "{object} " * how_many}).status_code == 200
+    while job := background.claim("a worker", "quick", Job):
+        carry_out(job)
+    assert not sample.world.jobs.exclude(status="succeeded").exists()
+    assert sample.world.jobs.filter(arguments__has_key="command").exists()
