@@ -39,6 +39,7 @@ from annotations.language.grounding.anonymizer import (
     readings_of,
 )
 from annotations.language.ontology import Ontology
+from annotations.language.text import places_of
 
 # A word with the apostrophes inside it, a class token, or a sign.
 _TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")
@@ -172,12 +173,8 @@ class Name:
 
 
 def tokens_of(text: str) -> list[tuple[int, int]]:
-    """Return where the words, class tokens and signs of a text begin and end.
-
-    Vowel signs and accents that are characters of their own belong to their words.
-    """
-    marked = "".join("_" if unicodedata.category(each)[0] == "M" else each for each in text)
-    return [match.span() for match in _TOKEN.finditer(marked)]
+    """Return where the words, class tokens and signs of a text begin and end."""
+    return places_of(_TOKEN, text)
 
 
 def spoken_words(text: str) -> list[str]:
