@@ -141,8 +141,7 @@ class NearCommands:
             for word, mine in self._with_word.items()
         }
         self._total = [
-            sum(self._weights[word] for word in set(_words(command)))
-            for command in self._commands
+            sum(self._weights[word] for word in set(_words(command))) for command in self._commands
         ]
 
     def nearest(self, heard: Anonymized, most: int = 3) -> tuple[str, ...]:
