@@ -41,7 +41,7 @@ ROOMS = {
         "templatetags",
     ),
     "annotations/web": (
-        "sent_texts", "not_found", "forms", "rest", "background", "editing", "description", "corpus", "campaigns",
+        "sent_texts", "not_found", "problems", "forms", "rest", "background", "editing", "description", "corpus", "campaigns",
         "splits", "queueing", "people", "worlds",
     ),
     "annotations/models": (

@@ -96,7 +96,7 @@ class LoadedParser:
         try:
             return self.batcher.ask(texts, beam)
         except Unanswered as error:
-            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message) from error
+            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message, error.code) from error
 
 
 @dataclass(frozen=True, slots=True)
