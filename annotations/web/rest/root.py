@@ -36,5 +36,6 @@ def _addresses() -> dict[str, list[str]]:
     addresses: dict[str, list[str]] = {}
     enumerator: Any = EndpointEnumerator()
     for path, _, method, _ in enumerator.get_api_endpoints():
-        addresses.setdefault(path, []).append(method)
+        as_in_schema = path.replace("{pk}", "{id}")
+        addresses.setdefault(as_in_schema, []).append(method)
     return addresses
