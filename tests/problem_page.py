@@ -150,6 +150,7 @@ def read_codes() -> dict[str, Code]:
             code.sentences[said] = None
     for name, said in SAID.items():
         codes[name].sentences = {said: None}
+    codes["not_imported"].statuses = {HTTPStatus.UNPROCESSABLE_ENTITY}  # its call names a variable
     return dict(sorted(codes.items()))
 
 
