@@ -35,6 +35,7 @@ from annotations.web.queueing import (
     sending_rest,
     work_item_rest,
 )
+from annotations.web.rest.root import ApiRoot
 from annotations.web.rest.schema_view import SchemaFile
 from annotations.web.splits import export_rest, split_rest
 from annotations.web.worlds import import_rest
@@ -134,6 +135,7 @@ people = [
 ]
 
 site = [
+    path("", ApiRoot.as_view(), name="root"),
     path("schema/", SchemaFile.as_view(), name="schema"),
     path("worlds/", Worlds.as_view(), name="worlds"),
     path("import-world/", import_rest.ImportWorld.as_view(), name="import-world"),

@@ -200,6 +200,7 @@ INSTALLED_APPS = [
 
 MIDDLEWARE = [
     "gpsr_site.web.request_log.RequestLog",
+    "gpsr_site.web.api_addresses.ApiAddresses",
     "gpsr_site.web.thread_shares.RefuseWhatWaited",
     "gpsr_site.web.deadlines.Deadline",
     "gpsr_site.web.proxies.ClientAddress",
@@ -330,6 +331,10 @@ SPECTACULAR_SETTINGS = {
     },
     "SERVE_INCLUDE_SCHEMA": False,
     "SCHEMA_PATH_PREFIX": r"/api/v1",
+    "POSTPROCESSING_HOOKS": [
+        "drf_spectacular.hooks.postprocess_schema_enums",
+        "annotations.web.rest.field_words.describe_fields",
+    ],
 }
 
 # --- Background work: the queue, and how fast its clocks go ---

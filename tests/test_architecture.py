@@ -41,8 +41,8 @@ ROOMS = {
         "templatetags",
     ),
     "annotations/web": (
-        "sent_texts", "not_found", "forms", "rest", "background", "editing", "description", "corpus", "campaigns",
-        "splits", "queueing", "people", "worlds",
+        "sent_texts", "not_found", "problems", "forms", "rest", "background", "editing", "description", "corpus",
+        "campaigns", "splits", "queueing", "people", "worlds",
     ),
     "annotations/models": (
         "short_texts", "people", "worlds", "background", "editing", "description", "campaigns", "corpus", "splits",

@@ -54,6 +54,7 @@ _ODD_LINE_END = re.compile("[\x85\u2028\u2029]")
 # Where more marks than MOST_MARKS can be, which is seldom.
 _MANY_MARKS = re.compile(r"[^\x00-\x7f]{31,}")
 _PLAIN = re.compile(r"[\t\n -~]*+")
+_WORD_OR_SIGN = re.compile(r"\w+|[^\w\s]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +139,28 @@ def normalise_json(value: Any) -> tuple[Any, TextChanges]:
             items, of_items = normalise_json(list(value.values()))
             return dict(zip(names, items, strict=True)), of_names + of_items
     return value, TextChanges()
+
+
+def places_of(words: re.Pattern[str], text: str) -> list[tuple[int, int]]:
+    """Return where the words of a text begin and end; ``words`` matches one.
+
+    Vowel signs and accents that are characters of their own belong to their words. Fold what stands at these places
+    word by word: folding a text moves its characters ("ß" becomes "ss"), so that no place in it is one of the text.
+    """
+    marked = "".join("_" if unicodedata.category(each)[0] == "M" else each for each in text)
+    return [match.span() for match in words.finditer(marked)]
+
+
+def find_words(wanted: str, text: str) -> tuple[int, int] | None:
+    """Return where ``text`` first has the words of ``wanted``, whole and next to each other, ignoring case; None where
+    it has not."""
+    said = [wanted[start:end].casefold() for start, end in places_of(_WORD_OR_SIGN, wanted)]
+    places = places_of(_WORD_OR_SIGN, text)
+    words = [text[start:end].casefold() for start, end in places]
+    for first in range(len(words) - len(said) + 1 if said else 0):
+        if words[first : first + len(said)] == said:
+            return places[first][0], places[first + len(said) - 1][1]
+    return None
 
 
 def has_half_character(text: str) -> bool:

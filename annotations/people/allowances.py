@@ -53,10 +53,15 @@ class Allowance:
 USUAL = Allowance()
 
 
+def with_last_slash(path: str) -> str:
+    """Return the path of a page as it is, and one of the API as its addresses are written: with a slash at the end."""
+    return f"{path}/" if path.startswith("/api/") and not path.endswith("/") else path
+
+
 def allowance_at(path: str) -> Allowance:
     """Return what the view at ``path`` takes; the usual where there is none."""
     try:
-        match = resolve(path)
+        match = resolve(with_last_slash(path))
     except Resolver404:
         return USUAL
     view: Any = getattr(match.func, "cls", match.func)

@@ -64,7 +64,7 @@ class LimitBodies:
 
     def _refuse(self, request: HttpRequest, limit: int, hint: str) -> HttpResponse:
         sentence = f"This address takes no more than {limit // 1024:,} kB from you. {hint}"
-        return refuse(request, 413, "Too much data", sentence)
+        return refuse(request, 413, "Too much data", sentence, "too_much_data")
 
 
 def _sender(request: HttpRequest) -> User | None:

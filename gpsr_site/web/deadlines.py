@@ -139,6 +139,7 @@ class Deadline:
                 "This took too long",
                 f"The server stopped working on it after {seconds:g} seconds, and nothing of it was "
                 "saved. Ask for less at once, or try again later.",
+                "took_too_long",
             )
         if isinstance(response, StreamingHttpResponse) and not hasattr(response, "file_to_stream"):
             left = seconds - (time.monotonic() - began)

@@ -33,15 +33,16 @@ def bad_request(request: HttpRequest, exception: Exception) -> HttpResponse:
         400,
         "This request cannot be read",
         "The address or the form was damaged on its way. Go back, reload the page and try again.",
+        "bad_request",
     )
 
 
 def permission_denied(request: HttpRequest, exception: Exception) -> HttpResponse:
     """Answer 403, inside the frame of the world that it is about."""
     if request.path.startswith("/api/"):
-        return refuse(request, 403, "No access", str(exception))
+        return refuse(request, 403, "No access", str(exception), "permission_denied")
     if not _has_user(request):
-        return refuse(request, 403, "No access", str(exception))
+        return refuse(request, 403, "No access", str(exception), "permission_denied")
     world = getattr(request, "world", None)
     context = {"sentence": str(exception), "admins": admins_of(world) if world else ()}
     return render(request, "403.html", context, status=403)
@@ -51,9 +52,10 @@ def not_found(request: HttpRequest, exception: Exception) -> HttpResponse:
     """Answer 404, inside the frame of the world in the address where the person may see that."""
     if request.path.startswith("/api/"):
         sentence = f"Nothing is at {request.path[:200]}. /api/v1/schema/ lists all addresses."
-        return refuse(request, 404, "Not found", sentence)
+        return refuse(request, 404, "Not found", sentence, "not_found")
     if not _has_user(request):
-        return refuse(request, 404, "Page not found", "Nothing is at this address.")
+        sentence = "Nothing is at this address."
+        return refuse(request, 404, "Page not found", sentence, "not_found")
     # The page gets the rail of the world in its address, if the person may see that world.
     address = WORLD_ADDRESS.match(request.path)
     if address is not None and not hasattr(request, "world"):
@@ -76,9 +78,10 @@ def server_error(request: HttpRequest) -> HttpResponse:
             "The disk of this site is full",
             "Your last step was not saved. What was saved before is still there, and pages can be read. Tell "
             f"whoever runs this site. {FREE_SPACE}, then send it again.",
+            "disk_full",
         )
     if error is not None and is_damaged(error):
-        return refuse(request, 500, "The database is damaged", DAMAGED)
+        return refuse(request, 500, "The database is damaged", DAMAGED, "database_damaged")
     if is_outage(error):
         response = refuse(
             request,
@@ -86,11 +89,12 @@ def server_error(request: HttpRequest) -> HttpResponse:
             "The database does not answer",
             "Nothing that was saved is lost, but your last step was not carried out. "
             f"Try again in {RETRY_SECONDS} seconds; if it stays so, tell whoever runs this site.",
+            "database_away",
         )
         response["Retry-After"] = str(RETRY_SECONDS)
         return response
     if is_clash(error):
-        return refuse(request, 409, "Somebody was faster", MADE_MEANWHILE)
+        return refuse(request, 409, "Somebody was faster", MADE_MEANWHILE, "made_meanwhile")
     return refuse(
         request,
         500,
@@ -98,6 +102,7 @@ def server_error(request: HttpRequest) -> HttpResponse:
         "Nothing that was saved is lost, but your last step may not have been carried out. Go back "
         "and try again; if it happens again, tell whoever runs this site at what time: the log has "
         "the details.",
+        "server_error",
     )
 
 
@@ -109,6 +114,7 @@ def csrf_failure(request: HttpRequest, reason: str = "") -> HttpResponse:
         "This form has expired",
         "It was opened before you last logged in or out, or your browser refuses cookies. Go back, "
         "reload the page and send it again.",
+        "form_expired",
     )
 
 

@@ -47,7 +47,7 @@ class NormaliseTexts:
         if not isinstance(error, OverflowError | DataError):
             return None
         sentence = "A number or a text here is larger than can be stored. Write a smaller one."
-        return refuse(request, 400, "This is too large", sentence)
+        return refuse(request, 400, "This is too large", sentence, "too_large")
 
     def process_view(self, request: HttpRequest, view: Any, args: Any, kwargs: Any) -> None:
         if request.META.get("QUERY_STRING"):

@@ -12,6 +12,8 @@ from django.template import loader
 from django.utils.html import format_html
 from django.utils.safestring import mark_safe
 
+from annotations.web.problems import CONTENT_TYPE, problem
+
 # A page that needs nothing: no template, no file, no database.
 STYLE = mark_safe(
     "body{max-width:36rem;margin:15vh auto;padding:0 1rem;font:1rem/1.5 system-ui,sans-serif}"
@@ -38,14 +40,14 @@ PAGE = """<!doctype html>
 """
 
 
-def refuse(request: HttpRequest, status: int, title: str, sentence: str) -> HttpResponse:
-    """Return a response that says what happened and what to do; problem+json below ``/api/``.
+def refuse(request: HttpRequest, status: int, title: str, sentence: str, code: str) -> HttpResponse:
+    """Return a response that says what happened and what to do; problem+json with ``code`` below ``/api/``.
 
     Needs no database. From status 500 on the page needs no template and no static file either.
     """
     if request.path.startswith("/api/"):
-        problem = {"type": "about:blank", "title": title, "status": status, "detail": sentence}
-        return JsonResponse(problem, status=status, content_type="application/problem+json")
+        document = problem(code, status, sentence, title)
+        return JsonResponse(document, status=status, content_type=CONTENT_TYPE)
     if status >= 500:
         page = format_html(PAGE, style=STYLE, title=title, sentence=sentence)
         # Made for views, it marks the answer of any function.

@@ -22,7 +22,7 @@ from waitress.parser import HTTPRequestParser
 from waitress.task import ThreadedTaskDispatcher, WSGITask
 
 from annotations.people.allowances import allowance_at
-from annotations.web.rest.streaming import JSON_LINES, BrokenOff
+from annotations.web.rest.streaming import JSON_LINES_TYPES, BrokenOff
 from gpsr_site.web.refusals import refuse
 
 logger = logging.getLogger(__name__)
@@ -32,7 +32,8 @@ FOR_HEALTH = 1
 FOR_READING = 2
 LOOK_SECONDS = 0.5  # between two looks at who has waited too long
 REFUSED = "gpsr.refused"  # in the environment of a request: what it asks of its thread
-LINES = JSON_LINES.partition("/")[2]  # REST takes them by other spellings too, such as */JSONL
+# REST takes them by other spellings too, such as */JSONL.
+LINES = tuple(each.partition("/")[2] for each in JSON_LINES_TYPES)
 
 
 class RequestKind(Enum):
@@ -82,7 +83,8 @@ def kind_of(method: str, path: str, content_type: str = "") -> RequestKind:
         return RequestKind.LONG if allowance.may_take_long else RequestKind.READ
     if not allowance.only_reads:
         return RequestKind.WRITE
-    return RequestKind.BATCH if LINES in content_type.lower() else RequestKind.READ
+    sent = content_type.lower()
+    return RequestKind.BATCH if any(each in sent for each in LINES) else RequestKind.READ
 
 
 class Dispatcher(ThreadedTaskDispatcher):
@@ -198,6 +200,6 @@ class RefuseWhatWaited:
             return self.get_response(request)
         seconds = SHARES[kind].retry_after
         sentence = f"{WHY[kind]} Try again in {seconds} seconds."
-        response = refuse(request, 503, "The server is busy", sentence)
+        response = refuse(request, 503, "The server is busy", sentence, "server_busy")
         response["Retry-After"] = str(seconds)
         return response

@@ -98,12 +98,13 @@ class LoadedParser:
         try:
             return self.batcher.ask(texts, beam)
         except Unanswered as error:
-            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message) from error
+            raise NotServed(HTTPStatus.SERVICE_UNAVAILABLE, error.message, error.code) from error
 
 
 @dataclass(frozen=True, slots=True)
 class PartAnswer:
-    """What one part answered to an utterance: ``text`` is what it was given. ``agrees`` says whether the other part
+    """What one part answered to an utterance: ``text`` is what it was given, which is what the utterance says from
+    ``start`` on, without noise. ``agrees`` says whether the other part
     gives the same form; None where that was not asked or is silent. ``pieces`` are the answers to the commands of an
     utterance that holds several. ``missing`` says why the last part did not answer."""
 
@@ -115,10 +116,11 @@ class PartAnswer:
     pieces: tuple[PartAnswer, ...] = ()
     changes: tuple[HeardChange, ...] = ()
     missing: str = ""
+    start: int = 0
 
-    def said_in(self, utterance: str) -> PartAnswer:
-        """Return the same as the answer to an utterance that has this one inside."""
-        return replace(self, utterance=utterance)
+    def said_in(self, utterance: str, start: int) -> PartAnswer:
+        """Return the same as the answer to an utterance that has this one inside, from ``start`` on."""
+        return replace(self, utterance=utterance, start=start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,9 +146,13 @@ class Answer:
 
     @property
     def changes(self) -> tuple[HeardChange, ...]:
-        """What was heard otherwise than it was said."""
+        """What was heard otherwise than it was said, with its places in the utterance."""
         best = next(iter(self.readings), None)
-        return (*self.given.changes, *(best.candidate.heard if best else ()))
+        start = self.given.start
+        return tuple(
+            replace(each, start=start + each.start, end=start + each.end)
+            for each in (*self.given.changes, *(best.candidate.heard if best else ()))
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,7 +319,7 @@ class Answerer:
             return given
         alone = self._ask_oracle(texts, beam)
         if len(texts) == 1:  # an announcement was taken off
-            return alone[0].said_in(given.utterance)
+            return alone[0].said_in(given.utterance, pieces[0].start)
         if self.oracle is None:
             judged = map(self.judge, self._ask_learned(alone, beam))
             alone = [self._cut_again(each, beam).given for each in judged]

@@ -61,11 +61,13 @@ class ParseApplication:
         try:
             return self._route(environ, start_response)
         except NotServed as error:
-            return _send_json(start_response, error.status, {"detail": error.message})
+            return _send_json(
+                start_response, error.status, {"code": error.code, "detail": error.message}
+            )
         except Exception:
             logger.exception("%s %s", environ["REQUEST_METHOD"], environ["PATH_INFO"])
             sentence = "The parser failed. The log of the parse server says why."
-            return _send_json(start_response, 500, {"detail": sentence})
+            return _send_json(start_response, 500, {"code": "parser_failed", "detail": sentence})
         finally:
             self._close()
 
@@ -76,16 +78,18 @@ class ParseApplication:
             return _send_json(start_response, 200, {"status": status})
         sent = environ.get("HTTP_AUTHORIZATION", "").encode("latin-1")
         if not hmac.compare_digest(sent, self._expected):
-            raise NotServed(401, "The parse server and whoever asks it do not share a secret.")
+            raise NotServed(
+                401, "The parse server and whoever asks it do not share a secret.", "other_secret"
+            )
         if path == "/metrics":
             return _send(start_response, 200, CONTENT_TYPE_LATEST, self._shelf.metrics.as_text())
         if path == "/api/v1/parsers/":
             return _send_json(start_response, 200, self._shelf.describe())
         address = PARSE_ADDRESS.match(path)
         if address is None:
-            raise NotServed(404, f"There is nothing at {path}.")
+            raise NotServed(404, f"There is nothing at {path}.", "not_found")
         if method != "POST":
-            raise NotServed(405, "Send a POST with an utterance.")
+            raise NotServed(405, "Send a POST with an utterance.", "method_not_allowed")
         body = environ["wsgi.input"].read(int(environ.get("CONTENT_LENGTH") or 0))
         if environ.get("CONTENT_TYPE", "").startswith(JSON_LINES):
             return self._parse_lines(address["world"], environ, body, start_response)
@@ -104,7 +108,7 @@ class ParseApplication:
             raise
         except Refusal as error:
             self._count("", 400)
-            raise NotServed(400, error.message) from error
+            raise NotServed(400, error.message, error.code) from error
         self._count(world, 200)
         self._shelf.metrics.utterances.labels(world=world).inc()
         self._shelf.metrics.seconds.observe(time.perf_counter() - began)
@@ -121,9 +125,10 @@ class ParseApplication:
             run = int(query["run"]) if "run" in query else None
             beam = require_beam(int(query.get("beam", USUAL_BEAM)))
         except Refusal as error:
-            raise NotServed(400, f"run and beam are whole numbers. {error.message}") from error
+            sentence = f"run and beam are whole numbers. {error.message}"
+            raise NotServed(400, sentence, error.code) from error
         except ValueError:
-            raise NotServed(400, "run and beam are whole numbers.") from None
+            raise NotServed(400, "run and beam are whole numbers.", "run_unreadable") from None
         answerer = self._find(world, run, query.get("parser", ""))
         self._count(world, 200)
         headers = [("Content-Type", JSON_LINES)]
@@ -137,12 +142,14 @@ class ParseApplication:
 
     def _find(self, world: str, run: object, parser: object) -> Answerer:
         if run is not None and (not isinstance(run, int) or isinstance(run, bool)):
-            raise NotServed(400, "run has to be the number of a run.")
+            raise NotServed(400, "run has to be the number of a run.", "run_unreadable")
         if parser not in ("", *untrained()):
             known = ", ".join(untrained())
-            raise NotServed(400, f"parser has to be one that needs no run: {known}.")
+            raise NotServed(
+                400, f"parser has to be one that needs no run: {known}.", "unknown_parser"
+            )
         if run is not None and parser:
-            raise NotServed(400, "Name a run or a parser, not both.")
+            raise NotServed(400, "Name a run or a parser, not both.", "run_and_parser")
         return self._shelf.find(world, run, LOADING_PATIENCE, str(parser))
 
     def _count(self, world: str, status: int) -> None:

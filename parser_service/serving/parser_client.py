@@ -42,8 +42,8 @@ class ParserRefused(Refusal):
 
     code = "not_parsed"
 
-    def __init__(self, status: int, sentence: str) -> None:
-        super().__init__(sentence, status=status)
+    def __init__(self, status: int, sentence: str, code: str = "") -> None:
+        super().__init__(sentence, code, status)
 
 
 @dataclass(frozen=True)
@@ -153,10 +153,11 @@ class ParserClient:
             raise ParserAway(sentence)
         if response.status != 200:
             try:
-                detail = str(json.loads(response.read())["detail"])
+                said = json.loads(response.read())
+                detail, code = str(said["detail"]), str(said["code"])
             except (OSError, HTTPException, ValueError, KeyError, TypeError, RecursionError):
-                detail = f"The parse server answered with status {response.status}."
-            raise ParserRefused(response.status, detail)
+                detail, code = f"The parse server answered with status {response.status}.", ""
+            raise ParserRefused(response.status, detail, code)
         return response
 
     def _wait_for_answer(self, connection: HTTPConnection) -> None:

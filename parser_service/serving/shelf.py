@@ -248,11 +248,12 @@ class Shelf:
         with self._changed:
             self._changed.wait_for(lambda: self._wanted is not None, patience)
         if self._wanted is None:
-            raise NotServed(503, "The parse server has not reached the database yet. Ask again.")
+            sentence = "The parse server has not reached the database yet. Ask again."
+            raise NotServed(503, sentence, "database_away")
         if world not in self._wanted:
             self._wanted = read_wanted()  # it may be new
         if world not in self._wanted:
-            raise NotServed(404, f"There is no world {world}.")
+            raise NotServed(404, f"There is no world {world}.", "unknown_world")
         return self._wanted[world]
 
     def _wait_for(self, world: str, patience: float) -> None:
@@ -261,7 +262,9 @@ class Shelf:
             has_come = self._changed.wait_for(lambda: not self._is_coming(world), patience)
         if not has_come:
             raise NotServed(
-                503, f"The promoted parser of {world} is not there. It is being loaded."
+                503,
+                f"The promoted parser of {world} is not there. It is being loaded.",
+                "parser_loading",
             )
 
     def _is_coming(self, world: str) -> bool:
@@ -315,7 +318,7 @@ class Shelf:
                 answerer = self._load(name, without_run, self._answerers.get(name))
             except Refusal as error:
                 problem = failed[2] if failed else error.message
-                raise NotServed(503 if failed else 409, problem) from error
+                raise NotServed(503 if failed else 409, problem, error.code) from error
             if failed:
                 answerer = replace(answerer, problem=failed[2])
             self._answerers[name] = answerer
@@ -338,7 +341,7 @@ class Shelf:
                         world, wanted, run, other if other and other.world == world else None
                     )
                 except Refusal as error:
-                    raise NotServed(409, error.message) from error
+                    raise NotServed(409, error.message, error.code) from error
                 self._make_room(other)
             self._others[run] = other
             self._others.move_to_end(run)
@@ -353,6 +356,7 @@ class Shelf:
                 f"The parser of run {run} takes {size / 1e6:,.0f} MB, and "
                 f"runs that are not promoted may take {self._most_bytes / 1e6:,.0f} MB here "
                 "(PARSER_MEMORY_MB).",
+                "parser_too_large",
             )
         used = size + sum(each.size for key, each in self._others.items() if key != run)
         while used > self._most_bytes:

@@ -17,7 +17,7 @@ from pytest_django.live_server_helper import LiveServer
 
 from annotations.models import ApiToken, Split
 from annotations.worlds.starter_world import STARTER_WORLD
-from gpsr_client import Away, Refused, Workbench, WorkbenchError
+from gpsr_client import Away, Dialogue, Parse, Refused, Workbench, WorkbenchError
 from parser_service.serving.parser_client import AWAY
 from parser_service.web.serving import parsing_rest
 from tests.clients.conftest import CLIENT
@@ -116,9 +116,12 @@ def test_a_dialogue_is_held_and_gone_on_with(home):
     assert after.prompt == "Shall I bring you the bowl?" and after.asked is None
     with pytest.raises(Refused) as late:
         talk.answer("red cup")
-    assert late.value.status == 409
+    assert (late.value.status, late.value.code) == (409, "dialogue_answered_meanwhile")
     done = after.answer("yes")
-    assert done.is_agreed and done.plan.is_executable and "bowl" in done.grounded
+    assert done.is_agreed and done.may_act and "bowl" in done.grounded
+    raw = {**done.raw, "task_plan": {**done.raw["task_plan"], "is_executable": False}}
+    stopped = Dialogue(done._transport, done._path, raw)
+    assert stopped.is_agreed and not stopped.may_act
     assert done.task_plan.is_executable and done.task_plan.steps[-1].releases["kind"]
     assert "bowl" in done.spoken
 
@@ -175,6 +178,32 @@ def test_a_desk_confirms_asks_refuses_and_hands_over_what_is_agreed(home, settin
     settings.PARSER_URL = "http://127.0.0.1:9"
     desk.hear("find the bowl")
     assert said[-1] == SORRY_AWAY
+
+
+@pytest.mark.parametrize("decision", ["act", "confirm"])
+def test_what_cannot_be_carried_out_is_not_handed_over(home, decision):
+    raw = {**home.parse("find the bowl").raw, "decision": decision}
+    problem = {"message": "There is no hand free."}
+    first = raw["candidates"][0]
+    plan = {**first["task_plan"], "is_executable": False, "problems": [problem]}
+    stopped = Parse.from_json({**raw, "candidates": [{**first, "task_plan": plan}]})
+    assert not stopped.may_act
+    assert Parse.from_json(raw).may_act is (decision == "act")
+
+    class Stopped:
+        def parse(self, utterance: str) -> Parse:
+            return stopped
+
+        def dialogue(self, utterance: str) -> Dialogue:
+            return home.dialogue(utterance)
+
+    said: list[str] = []
+    plans: list[str] = []
+    desk = CommandDesk(Stopped(), said.append, plans.append)
+    desk.hear("find the bowl")
+    if decision == "confirm":
+        desk.hear("yes")
+    assert not plans and said[-1] == problem["message"]
 
 
 def test_the_client_needs_the_standard_library_alone():

@@ -7,6 +7,7 @@ from annotations.language.english.inflection import (
     looks_plural,
     plural,
     say_count,
+    singular,
     spellings,
 )
 from annotations.language.english.known_words import KnownWords, is_common
@@ -241,6 +242,7 @@ __all__ = [
     "read_stand_in",
     "sample_commands",
     "say_count",
+    "singular",
     "sounds_like",
     "spellings",
     "stand_in",

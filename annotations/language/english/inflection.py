@@ -1,56 +1,78 @@
-"""Plurals of English nouns: the one to print, and likely spellings to recognise words by."""
+"""Number and articles of English nouns: one mechanism prints plurals and knows them again.
+
+``data/inflection.toml`` has the nouns that no rule inflects.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from annotations.language.english.stand_ins import STAND_IN, read_stand_in, stand_in
-from annotations.language.english.word_lists import PLURALS
+from annotations.language.english.word_lists import (
+    BEGINNINGS_AFTER_A,
+    BEGINNINGS_AFTER_AN,
+    LETTERS_AFTER_AN,
+    NO_ENDINGS,
+    NOUNS_IN_I_OR_U,
+    NOUNS_IN_IE,
+    PLURALS,
+    SINGULARS_IN_S,
+    UNCHANGING,
+)
 
-_VOWELS = "aeiou"
+_VOWELS = tuple("aeiou")
 _SIBILANTS = ("s", "x", "z", "ch", "sh")
-# Words that are said with another first sound than their first letter has.
-_AFTER_A = ("uni", "use", "usu", "euro", "one ", "ewe")
-_AFTER_AN = ("hour", "honest", "honour", "heir")
-_SINGULAR_ENDS = (
-    "ss",
-    "us",
-    "is",
-    "mos",
-)  # of words with an s that is no plural's: glass, bus, iris, thermos
+_ES = ("ses", "xes", "zes", "ches", "shes", "oes")
+_FEWEST_BEFORE = 2  # letters of a noun before the one that it ends with
+_LONGEST_ABBREVIATION = 3  # letters: TVs, but TEAS
+_PLURALS: dict[str, tuple[str, ...]] = dict.fromkeys((*UNCHANGING, *NOUNS_IN_IE), ()) | PLURALS
+_SINGULARS = {form: noun for noun, forms in PLURALS.items() for form in forms}
 
 
 def plural(noun: str) -> str:
-    """Return the plural of a noun phrase: ``objects``, ``people``, ``objects of the category``.
+    """Return the plural of a noun phrase to print: ``knives``, ``people``, ``bottles of water``.
 
     What looks like a plural stays: kinds of things are called ``tools`` and ``drinks`` in an ontology.
     """
-    head, of, rest = noun.partition(" of ")
-    before, space, last = head.rpartition(" ")
-    if STAND_IN.fullmatch(last):
-        plural_of_last = stand_in(read_stand_in(last)[0], is_plural=True)
-    elif last in PLURALS:
-        plural_of_last = PLURALS[last]
-    elif looks_plural(last):
-        plural_of_last = last
-    else:
-        plural_of_last = f"{last[:-1]}ies" if _ends_in_consonant_y(last) else _add_s(last)
-    return before + space + plural_of_last + of + rest
+    before, head, rest = _split(noun)
+    if STAND_IN.fullmatch(head):
+        return before + stand_in(read_stand_in(head)[0], is_plural=True) + rest
+    return noun if _is_plural(head) else before + next(_plurals(head), head) + rest
+
+
+def singular(noun: str) -> str:
+    """Return the likeliest singular of a noun phrase; what looks like none of a plural stays."""
+    before, head, rest = _split(noun)
+    return before + next(_singulars(head), head) + rest if _is_plural(head) else noun
 
 
 def looks_plural(noun: str) -> bool:
-    """Return whether a noun phrase looks like a plural: ``chips``, but not ``glass``."""
-    last = noun.lower().rpartition(" ")[2]
-    return last.endswith("s") and not last.endswith(_SINGULAR_ENDS)
+    """Return whether a noun phrase looks like a plural: ``chips``, ``people``, but not ``glass``."""
+    return _is_plural(_split(noun)[1])
+
+
+def spellings(noun: str) -> Iterator[str]:
+    """Yield what a noun phrase may be called in the plural, and in the singular if it is one; only its head changes.
+
+    The plural that is printed is the first one of a singular. Each is known again: a noun is among the spellings of
+    its plural. Plurals that people write though they are none are among them, too: ``knifes``.
+    """
+    before, head, rest = _split(noun)
+    for spelling in dict.fromkeys((*_plurals(head), *_singulars(head))):
+        if spelling != head:
+            yield f"{before}{spelling}{rest}"
 
 
 def article(noun: str) -> str:
     """Return ``a`` or ``an``, whichever a noun phrase begins with."""
-    begin = noun.lower()
-    is_vowel = begin.startswith(_AFTER_AN) or (
-        begin.startswith(tuple(_VOWELS)) and not begin.startswith(_AFTER_A)
-    )
-    return "an" if is_vowel else "a"
+    begin, first = noun.lower(), noun.partition(" ")[0]
+    if begin.startswith(BEGINNINGS_AFTER_AN):
+        return "an"
+    if begin.startswith(BEGINNINGS_AFTER_A):
+        return "a"
+    if len(first) <= _LONGEST_ABBREVIATION and first.isupper() and first[1:]:
+        return "an" if first.startswith((*LETTERS_AFTER_AN, *"AEIO")) else "a"
+    return "an" if begin.startswith(_VOWELS) else "a"
 
 
 def say_count(count: int, noun: str) -> str:
@@ -58,49 +80,112 @@ def say_count(count: int, noun: str) -> str:
     return f"{count:,} {noun if count == 1 else plural(noun)}"
 
 
-def spellings(noun: str) -> Iterator[str]:
-    """Yield likely plurals and singulars of a noun phrase; only its last word changes.
-
-    ``knife`` gives knives, ``dish`` dishes, ``cookies`` cookie and cooky, ``tea spoon`` tea spoons.
-    """
-    head, space, last = noun.rpartition(" ")
-    for spelling in (*_plurals(last), *_singulars(last)):
-        if spelling and spelling != last:
-            yield f"{head}{space}{spelling}"
+def _split(noun: str) -> tuple[str, str, str]:
+    """Return what stands before the head of a noun phrase, the head, and what stands after it."""
+    first, of, rest = noun.partition(" of ")
+    before, space, head = first.rpartition(" ")
+    return before + space, head, of + rest
 
 
-def _ends_in_consonant_y(word: str) -> bool:
+def _lower(word: str) -> str:
+    """Return a word in lower case, with as many letters."""
     lower = word.lower()
-    return lower.endswith("y") and lower[-2:-1] not in _VOWELS
+    return lower if len(lower) == len(word) else word
+
+
+def _like(word: str, form: str) -> str:
+    """Return ``form`` written as ``word`` is."""
+    if word.isupper() and len(word) > _LONGEST_ABBREVIATION:
+        return form.upper()
+    letters = zip(_lower(word), form, strict=False)
+    same = next(
+        (at for at, (one, other) in enumerate(letters) if one != other), min(len(word), len(form))
+    )
+    return word[:same] + form[same:]
+
+
+def _ending(word: str, known: Container[str]) -> str:
+    """Return the longest of ``known`` that a word in lower case is, or ends with; empty where there is none."""
+    for start in range(len(word)):
+        end = word[start:]
+        if end in known and (start == 0 or (start >= _FEWEST_BEFORE and end not in NO_ENDINGS)):
+            return end
+    return ""
 
 
 def _plurals(word: str) -> Iterator[str]:
-    lower = word.lower()
-    if _ends_in_consonant_y(word):
-        yield f"{word[:-1]}ies"
-    if lower.endswith("fe"):
-        yield f"{word[:-2]}ves"
-    elif lower.endswith("f"):
-        yield f"{word[:-1]}ves"
+    """Yield the plurals of a word, the one to print first; none of what is clearly a plural."""
+    lower = _lower(word)
+    if _is_plural(word) and (lower.endswith("es") or not lower.endswith("s")):
+        return
+    noun = _ending(lower, _PLURALS)
+    stem = lower.removesuffix(noun)
+    for form in (*(stem + each for each in _PLURALS.get(noun, ())), *_regular(lower)):
+        yield _like(word, form)
+
+
+def _regular(lower: str) -> Iterator[str]:
+    """Yield the plurals that rules make, the best one first; of a noun that does not change first itself."""
+    if _ending(lower, UNCHANGING):
+        yield lower
+    if lower.endswith("y") and not lower[:-1].endswith(_VOWELS):
+        yield f"{lower[:-1]}ies"
+    elif lower.endswith(("sis", "xis")):
+        yield f"{lower[:-2]}es"
+    yield lower + ("es" if lower.endswith(_SIBILANTS) else "s")
+    if lower.endswith(("f", "fe")):
+        yield f"{lower.removesuffix('e')[:-1]}ves"
     elif lower.endswith("o"):
-        yield f"{word}es"
+        yield f"{lower}es"
     elif lower.endswith("man"):
-        yield f"{word[:-2]}en"
-    yield _add_s(word)
+        yield f"{lower[:-2]}en"
 
 
-def _add_s(word: str) -> str:
-    return word + ("es" if word.lower().endswith(_SIBILANTS) else "s")
+def _is_plural(word: str) -> bool:
+    lower = _lower(word)
+    if _ending(lower, UNCHANGING):
+        return False
+    if _ending(lower, _SINGULARS):
+        return True
+    return lower.endswith("s") and not _is_singular_in_s(lower)
+
+
+def _is_singular_in_s(lower: str) -> bool:
+    if lower.endswith(("us", "is")):
+        return lower[:-1] not in NOUNS_IN_I_OR_U
+    return lower.endswith("ss") or bool(_ending(lower, SINGULARS_IN_S))
 
 
 def _singulars(word: str) -> Iterator[str]:
-    lower = word.lower()
-    if len(word) < 4 or not lower.endswith("s") or lower.endswith("ss"):
+    """Yield what a word may be the plural of, the likeliest first."""
+    lower = _lower(word)
+    form = _ending(lower, _SINGULARS)
+    if form:
+        yield _like(word, lower.removesuffix(form) + _SINGULARS[form])
+    if len(lower) <= _FEWEST_BEFORE or not lower.endswith("s") or lower.endswith("ss"):
         return
+    likely = dict.fromkeys(_stems(lower))
+    for stem in sorted(likely, key=lambda each: not _is_known(each)):
+        yield _like(word, stem)
+
+
+def _stems(lower: str) -> Iterator[str]:
+    """Yield what rules make of a word in s, the likeliest first."""
     if lower.endswith("ies"):
-        yield f"{word[:-3]}y"
+        yield f"{lower[:-3]}y"
+    if lower.endswith(("ches", "shes", "sses", "xes", "zes")):
+        yield lower[:-2]
+    yield lower[:-1]
     if lower.endswith("ves"):
-        yield from (f"{word[:-3]}f", f"{word[:-3]}fe")
-    if lower.endswith(("ses", "xes", "zes", "ches", "shes", "oes")):
-        yield word[:-2]
-    yield word[:-1]
+        yield from (f"{lower[:-3]}f", f"{lower[:-3]}fe")
+    if lower.endswith(_ES):
+        yield lower[:-2]
+    if lower.endswith(("ses", "xes")):
+        yield f"{lower[:-2]}is"
+
+
+def _is_known(stem: str) -> bool:
+    """Whether a noun is on a list, so that its plural is taken for no other's."""
+    if stem.endswith("s"):
+        return bool(_ending(stem, SINGULARS_IN_S)) or stem in ("bus", "virus")
+    return bool(_ending(stem, PLURALS) or _ending(stem, NOUNS_IN_IE))

@@ -145,9 +145,19 @@ ANY_OBJECT = _nouns.text("any_object")
 OPEN_CATEGORIES = _nouns.words("open_categories")
 REFERENCES = _nouns.words_by_name("references")
 KINDS_OF_PLACES = tuple(map(frozenset, _nouns.groups("kinds_of_places")))
-PLURALS = _nouns.texts_by_name("plurals")
 OBFUSCATED = _nouns.texts_by_name("obfuscated")
 PRONOUNS = _nouns.tables_by_name("pronouns")
+
+_inflection = WordFile("inflection")
+PLURALS = _inflection.words_by_name("plurals")
+UNCHANGING = frozenset(_inflection.words("unchanging"))
+SINGULARS_IN_S = frozenset(_inflection.words("singulars_in_s"))
+NOUNS_IN_I_OR_U = frozenset(_inflection.words("nouns_in_i_or_u"))
+NO_ENDINGS = frozenset(_inflection.words("no_endings"))
+NOUNS_IN_IE = frozenset(_inflection.words("nouns_in_ie"))
+_articles = _inflection.words_by_name("articles")
+BEGINNINGS_AFTER_A, BEGINNINGS_AFTER_AN = _articles["a"], _articles["an"]
+LETTERS_AFTER_AN = _articles["letters"]
 
 _answers = WordFile("answers")
 YES_WORDS = frozenset(_answers.words("yes"))

@@ -11,6 +11,7 @@ from enum import IntEnum
 from annotations.language.english import looks_plural, spellings
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.symbols import EntityClasses
+from annotations.language.text import places_of
 
 _TOKEN = re.compile(r"<\w+>|\w+|[^\w\s]")
 # A grounded question becomes this word; the question itself is only in the note.
@@ -86,7 +87,7 @@ class Anonymizer:
         readings: defaultdict[tuple[str, ...], list[Reading]] = defaultdict(list)
         for entity in ontology.entities:
             for words, reading in readings_of(entity, ontology.classes):
-                if key := tuple(_TOKEN.findall(words.casefold())):
+                if key := tuple(text for _, _, text in _folded(words)):
                     readings[key].append(reading)
         self._readings: dict[tuple[str, ...], tuple[Reading, ...]] = {}
 
@@ -120,18 +121,23 @@ class Anonymizer:
 
     def _find_matches(self, text: str) -> Iterator[tuple[int, int, tuple[Reading, ...]]]:
         """Yield (start, end, readings) for each match."""
-        tokens = list(_TOKEN.finditer(text))
-        words = [token[0].casefold() for token in tokens]
+        tokens = _folded(text)
+        words = [word for _, _, word in tokens]
         place = 0
         while place < len(words):
             for length in range(min(self._longest, len(words) - place), 0, -1):
                 readings = self._readings.get(tuple(words[place : place + length]))
                 if readings:
                     last = place + length - 1
-                    yield tokens[place].start(), tokens[last].end(), readings
+                    yield tokens[place][0], tokens[last][1], readings
                     place = last
                     break
             place += 1
+
+
+def _folded(text: str) -> list[tuple[int, int, str]]:
+    """Return where each word, class token and sign of a text begins and ends, and the word without its case."""
+    return [(start, end, text[start:end].casefold()) for start, end in places_of(_TOKEN, text)]
 
 
 def readings_of(entity: Entity, classes: EntityClasses) -> Iterator[tuple[str, Reading]]:

@@ -12,6 +12,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
+from annotations.language.text import places_of
+
 # A word with the apostrophes inside it, a class token, or a sign.
 _TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")
 _SIGNS_INSIDE = re.compile(r"[^\w]|_")
@@ -59,12 +61,8 @@ def fold(word: str) -> str:
 
 
 def tokens_of(text: str) -> list[tuple[int, int]]:
-    """Return where the words, class tokens and signs of a text begin and end.
-
-    Vowel signs and accents that are characters of their own belong to their words.
-    """
-    marked = "".join("_" if unicodedata.category(each)[0] == "M" else each for each in text)
-    return [match.span() for match in _TOKEN.finditer(marked)]
+    """Return where the words, class tokens and signs of a text begin and end."""
+    return places_of(_TOKEN, text)
 
 
 def spoken_words(text: str) -> list[str]:

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from annotations.language.decoding import read_text
+from annotations.language.english import spellings
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.ontology.entities import Entity, Ontology
 from annotations.language.ontology.ontology_checks import ontology_problems
@@ -318,14 +319,16 @@ def _places_of(
 ) -> dict[str, list[str]]:
     """Return folded plural → the locations where the objects of a class belong, as the map says it in plural or
     singular."""
-    known: dict[str, str] = {}
+    names: dict[str, str] = {}
     for key, (plural, singular, _) in classes.items():
         for name in (plural.text, singular):
-            known.setdefault(stem_of(name), key)
+            names.setdefault(_fold(name), key)
+    known = {each: key for name, key in names.items() for each in spellings(name)} | names
     places: dict[str, list[str]] = defaultdict(list)
     for location, cells in belongs.items():
         for cell in cells:
-            named = known.get(stem_of(cell.text))
+            said = _fold(cell.text)
+            named = next((known[each] for each in (said, *spellings(said)) if each in known), None)
             if named is None:
                 sentence = f"no objects are of the class {cell.text}"
                 problems.append(warning_at(cell.position, sentence, "name a class of objects.md"))
@@ -334,12 +337,6 @@ def _places_of(
     return places
 
 
-def stem_of(name: str) -> str:
-    """Return a name without case, underscores and the ending of a plural."""
-    folded = " ".join(name.casefold().replace("_", " ").split())
-    if folded.endswith("ies"):
-        return f"{folded[:-3]}y"
-    for ending in ("shes", "ches", "sses", "xes", "zes"):
-        if folded.endswith(ending):
-            return folded[:-2]
-    return folded.removesuffix("s")
+def _fold(name: str) -> str:
+    """Return a name without case and underscores."""
+    return " ".join(name.casefold().replace("_", " ").split())

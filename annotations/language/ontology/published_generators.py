@@ -16,13 +16,13 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from annotations.language.decoding import read_text
+from annotations.language.english import singular as one_of
 from annotations.language.errors import Position, Problem, warning_at
 from annotations.language.ontology.competition_folder import (
     LOCATIONS,
     NAMES,
     OBJECTS,
     ROOMS,
-    stem_of,
 )
 from annotations.language.ontology.entities import Entity, Ontology
 
@@ -289,7 +289,7 @@ class _Reading:
 
 
 def _write_class(plural: str, singular: str | None = None) -> str:
-    names = (name.replace(" ", "_") for name in (plural, singular or stem_of(plural)))
+    names = (name.replace(" ", "_") for name in (plural, singular or one_of(plural.casefold())))
     return "write # Class {} ({})".format(*names)
 
 

@@ -71,7 +71,7 @@ def _unknown(heard: Anonymized, known: set[str], stems: set[str]) -> Iterator[tu
         end = span.end
     for start, stop in (*gaps, (end, len(heard.original))):
         for match in _WORD.finditer(heard.original, start, stop):
-            word = match[0].casefold().replace("’", "'")
+            word = _fold(match[0])
             is_known = word in known or _stem(word) in stems or word.isdigit() or word[0] == "<"
             is_next = begin is not None and heard.original[last : match.start()].isspace()
             if begin is not None and (is_known or not is_next):
@@ -82,6 +82,14 @@ def _unknown(heard: Anonymized, known: set[str], stems: set[str]) -> Iterator[tu
         if begin is not None:
             yield begin, last
             begin = None
+
+
+def _fold(word: str) -> str:
+    return word.casefold().replace("’", "'")
+
+
+def _words(text: str) -> list[str]:
+    return [_fold(word) for word in _WORD.findall(text)]
 
 
 def _share(command: str, other: str) -> float:
@@ -97,7 +105,7 @@ def _stem(word: str) -> str:
 def _words_of_entities(ontology: Ontology) -> Iterator[str]:
     for entity in ontology.entities:
         for text in (entity.text, *entity.aliases):
-            yield from _WORD.findall(text.casefold())
+            yield from _words(text)
 
 
 def with_entities(command: str, heard: Anonymized, ontology: Ontology) -> str:
@@ -126,15 +134,14 @@ class NearCommands:
         self._commands = list(dict.fromkeys(commands))
         self._with_word: defaultdict[str, list[int]] = defaultdict(list)
         for number, command in enumerate(self._commands):
-            for word in set(_WORD.findall(command.casefold())):
+            for word in set(_words(command)):
                 self._with_word[word].append(number)
         self._weights = {
             word: math.log(1 + len(self._commands) / len(mine))
             for word, mine in self._with_word.items()
         }
         self._total = [
-            sum(self._weights[word] for word in set(_WORD.findall(command.casefold())))
-            for command in self._commands
+            sum(self._weights[word] for word in set(_words(command))) for command in self._commands
         ]
 
     def nearest(self, heard: Anonymized, most: int = 3) -> tuple[str, ...]:
@@ -142,7 +149,7 @@ class NearCommands:
 
         A word that no command has counts as the one that is spelt alike. Linear in the words and the commands.
         """
-        words = {self._read(word) for word in set(_WORD.findall(heard.command.casefold()))}
+        words = {self._read(word) for word in set(_words(heard.command))}
         shared: defaultdict[int, float] = defaultdict(float)
         for word in words:
             for number in self._with_word.get(word, ()):

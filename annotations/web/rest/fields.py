@@ -20,7 +20,7 @@ class Fields(serializers.Serializer[Any]):
             unknown = [name for name in data if name not in self.fields]
             if unknown:
                 known = ", ".join(self.fields)
-                hint = f"Nothing is called so here; there are: {known}."
+                hint = f"There is no field of this name. This request takes: {known}."
                 raise serializers.ValidationError({str(name)[:80]: [hint] for name in unknown})
         return super().to_internal_value(data)
 

@@ -10,10 +10,11 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.permissions import AllowAny
 
+from annotations.web.problems import CONTENT_TYPE
 from annotations.web.rest.fields import with_problems
 from annotations.web.rest.idempotency import HEADER
 from annotations.web.rest.permissions import asked_of
-from annotations.web.rest.problem_details import CONTENT_TYPE, ProblemSerializer
+from annotations.web.rest.problem_details import ProblemSerializer
 
 IF_MATCH = OpenApiParameter(
     "If-Match",

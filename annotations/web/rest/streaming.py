@@ -9,6 +9,12 @@ from django.http import StreamingHttpResponse
 from annotations.web.rest.negotiation import CONTENT_TYPES
 
 JSON_LINES = "application/jsonl"
+# What programs call the same.
+JSON_LINES_TYPES = (
+    JSON_LINES,
+    *("application/x-jsonl", "application/jsonlines", "application/x-jsonlines"),
+    *("application/ndjson", "application/x-ndjson"),
+)
 
 
 class BrokenOff(Exception):

@@ -71,9 +71,10 @@ class CommandDesk:
         reply = text.strip().strip(".,!").casefold()
         if reply in YES or reply in NO:
             self._confirmed = None
-            self._say(WILL if reply in YES else WILL_NOT)
             if reply in YES:
-                self._carry_out(_plan_of(parse))
+                self._carry_out(_plan_of(parse), WILL)
+            else:
+                self._say(WILL_NOT)
         else:
             answer = self._workbench.parse(text)
             self._forget()
@@ -82,11 +83,9 @@ class CommandDesk:
     def _decide(self, parse: Parse) -> None:
         if parse.several and not (parse.may_act and parse.joint_plan):
             self._waiting.extendleft(reversed(parse.several))  # each by its own decision
-        elif parse.may_act:
-            self._say(parse.spoken)
-            self._carry_out(
-                parse.joint_plan.raw["joint_plan"] if parse.joint_plan else _plan_of(parse)
-            )
+        elif parse.decision == "act":
+            joint = parse.joint_plan
+            self._carry_out(joint.raw["joint_plan"] if joint else _plan_of(parse), parse.spoken)
         elif parse.decision == "confirm":
             self._confirmed = parse
             self._say(parse.spoken)
@@ -102,9 +101,11 @@ class CommandDesk:
         if dialogue.is_agreed:
             self._carry_out(dialogue.raw["task_plan"])
 
-    def _carry_out(self, plan: dict[str, Any]) -> None:
-        """Hand over what may be done, where nothing stands in the way of it; else ask what is open."""
+    def _carry_out(self, plan: dict[str, Any], announcement: str = "") -> None:
+        """Hand over what may be done, and say so first; where something stands in the way of it, ask what is open."""
         if plan["is_executable"]:
+            if announcement:
+                self._say(announcement)
             self._act(json.dumps(plan))
         else:
             questions = [gap["question"] for each in plan["unresolved"] for gap in each["open"]]

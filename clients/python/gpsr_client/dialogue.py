@@ -50,8 +50,13 @@ class Dialogue:
 
     @property
     def is_agreed(self) -> bool:
-        """Whether the person has agreed to the whole command. The robot acts where ``task_plan`` is executable too."""
+        """Whether the person has agreed to the whole command."""
         return self.phase == "done"
+
+    @property
+    def may_act(self) -> bool:
+        """Whether the robot may carry out the task plan, and can."""
+        return self.is_agreed and self.task_plan.is_executable
 
     @property
     def grounded(self) -> str:

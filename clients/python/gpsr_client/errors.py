@@ -6,7 +6,11 @@ from typing import Any
 
 
 class WorkbenchError(Exception):
-    """The workbench did not do what was asked; a sentence says why."""
+    """The workbench did not do what was asked; a sentence says why, and a ``code`` where the workbench answered."""
+
+    def __init__(self, detail: str, code: str = "") -> None:
+        super().__init__(detail)
+        self.code = code
 
 
 class Away(WorkbenchError):
@@ -14,9 +18,12 @@ class Away(WorkbenchError):
 
 
 class Refused(WorkbenchError):
-    """The request was refused: an HTTP ``status``, and ``problems`` with their fields or places."""
+    """The request was refused: the ``code`` of the reason, an HTTP ``status``, and ``problems`` with their fields or
+    places."""
 
-    def __init__(self, status: int, detail: str, problems: list[dict[str, Any]]) -> None:
-        super().__init__(detail)
+    def __init__(
+        self, status: int, detail: str, problems: list[dict[str, Any]], code: str = ""
+    ) -> None:
+        super().__init__(detail, code)
         self.status = status
         self.problems = problems

@@ -405,8 +405,10 @@ class Parse:
 
     @property
     def may_act(self) -> bool:
-        """Whether the robot may carry out the plan without a word of the person."""
-        return self.decision == "act"
+        """Whether the robot may carry out the plan, and can, without a word of the person: the joint plan of several
+        commands, else the task plan of the best candidate."""
+        plan = self.joint_plan.plan if self.joint_plan else self.best and self.best.task_plan
+        return self.decision == "act" and plan is not None and plan.is_executable
 
     @property
     def best(self) -> Candidate | None:

@@ -91,6 +91,9 @@ def _refusal(error: HTTPError) -> Away | Refused:
     try:
         problem = json.loads(error.read())
         detail, problems = str(problem["detail"]), list(problem.get("problems", ()))
+        code = str(problem.get("code", ""))
     except (HTTPException, OSError, ValueError, KeyError, TypeError, RecursionError):
-        detail, problems = f"The workbench answered with status {error.code}.", []
-    return Away(detail) if error.code in _AWAY else Refused(error.code, detail, problems)
+        detail, problems, code = f"The workbench answered with status {error.code}.", [], ""
+    if error.code in _AWAY:
+        return Away(detail, code)
+    return Refused(error.code, detail, problems, code)

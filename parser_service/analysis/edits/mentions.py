@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from annotations.language.english import article
 from annotations.language.forms import CLASS_TOKEN, Constant, Form, walk
 from annotations.language.grounding import Anonymizer
 
@@ -47,10 +48,10 @@ class TokenizedUtterance:
     def replace(self, mention: UtteranceToken, new: str) -> str:
         """Return the text with ``new`` in place of a mention; an article before it fits the new word."""
         before, after = self.text[: mention.start], self.text[mention.end :]
-        article = re.search(r"\b(an?)(\s+)$", before, re.IGNORECASE)
-        if article is not None and new[:1].isalpha():
-            fitting = article[1][0] + ("n" if new[0].lower() in "aeiou" else "")
-            before = before[: article.start()] + fitting + article[2]
+        said = re.search(r"\b(an?)(\s+)$", before, re.IGNORECASE)
+        if said is not None and new[:1].isalpha():
+            fitting = said[1][0] + article(new)[1:]
+            before = before[: said.start()] + fitting + said[2]
         return before + new + after
 
 

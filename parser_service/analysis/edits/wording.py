@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from random import Random
 
-from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPENINGS
+from annotations.language.english import ARTICLES, NO_COMMAND_WORDS, POLITE_OPENINGS, article
 from annotations.language.forms import Form, head_predicate
 from parser_service.analysis.edits.edit import EditKind, UtteranceEdit
 from parser_service.analysis.edits.facts import WorldFacts
@@ -46,15 +46,14 @@ def change_article(
     utterance: TokenizedUtterance, form: Form, facts: WorldFacts
 ) -> Iterator[UtteranceEdit]:
     """Exchange “the” and “a” before something that the world has by name or class."""
-    for article, noun in zip(utterance.mentions, utterance.mentions[1:], strict=False):
+    for said, noun in zip(utterance.mentions, utterance.mentions[1:], strict=False):
         # A category is a plural, and people go without an article.
         is_noun = facts.ontology.classes.has_plurals(noun.entity_class)
-        if article.text.lower() in ARTICLES and is_noun and noun.entity_class != "category":
-            definite = article.text.lower() == "the"
-            vowel = noun.text.lstrip("<")[:1].lower() in tuple("aeiou")
-            new = _like(article.text, ("an" if vowel else "a") if definite else "the")
-            text = utterance.text[: article.start] + new + utterance.text[article.end :]
-            yield UtteranceEdit(EditKind.ARTICLE, text, form, article.text, new)
+        if said.text.lower() in ARTICLES and is_noun and noun.entity_class != "category":
+            is_definite = said.text.lower() == "the"
+            new = _like(said.text, article(noun.text.lstrip("<")) if is_definite else "the")
+            text = utterance.text[: said.start] + new + utterance.text[said.end :]
+            yield UtteranceEdit(EditKind.ARTICLE, text, form, said.text, new)
 
 
 def misspell(

@@ -17,6 +17,7 @@ from annotations.labelling.entity_spans import mend_span
 from annotations.labelling.form_check import check_label
 from annotations.labelling.label_queue import last_labels, next_utterance, progress_of
 from annotations.language.errors import Refusal
+from annotations.language.text import find_words
 from annotations.lists.listing import Listing
 from annotations.lists.paging import number_in
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
@@ -111,7 +112,7 @@ def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say which words of an utterance name which entity; the words become an alias of it."""
     row = get_object_or_404(world.utterances, pk=pk)
     words, name = request.POST.get("words", "").strip(), request.POST.get("entity", "")
-    start = row.text.casefold().find(words.casefold())
+    place = find_words(words, row.text)
     try:
         text, _, entity_class = name.strip().removesuffix(")").rpartition(" (")
         rows = Entity.objects.filter(ontology__world=world, entity_class=entity_class)
@@ -122,14 +123,14 @@ def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
                 "unknown_entity",
                 HTTPStatus.UNPROCESSABLE_ENTITY,
             )
-        if start < 0:
+        if place is None:
             raise Refusal(
                 f"The utterance does not have the words “{words[:60]}”.",
                 "words_not_in_utterance",
                 HTTPStatus.UNPROCESSABLE_ENTITY,
             )
         version = int(_number(request.POST.get("version")) or 0)
-        row = mend_span(row, start, start + len(words), entity, request.user, version)
+        row = mend_span(row, *place, entity, request.user, version)
     except Refusal as refusal:
         return _reply(request, world, row, str(refusal), status_of(refusal))
     return _reply(request, world, row, stays=True)

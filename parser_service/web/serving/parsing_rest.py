@@ -29,7 +29,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
-from annotations.web.rest.streaming import JSON_LINES, BrokenOff
+from annotations.web.rest.streaming import JSON_LINES, JSON_LINES_TYPES, BrokenOff
 from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client
@@ -60,6 +60,11 @@ class JsonLinesParser(BaseParser):
         return bytes(stream.read())
 
 
+JSON_LINES_PARSERS = [
+    type("JsonLinesParser", (JsonLinesParser,), {"media_type": each}) for each in JSON_LINES_TYPES
+]
+
+
 class AskedParser(serializers.Serializer[Any]):
     """In how many ways to parse, and whom to ask: what answers in the world, or one parser alone."""
 
@@ -74,7 +79,10 @@ class AskedParser(serializers.Serializer[Any]):
         help_text="Ask the parser of this run alone.",
     )
     parser = serializers.ChoiceField(
-        choices=untrained(), default="", help_text="Ask this parser alone. It needs no run."
+        choices=untrained(),
+        default="",
+        allow_blank=True,
+        help_text="Ask this parser alone. It needs no run. Empty for what answers in the world.",
     )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
@@ -230,7 +238,7 @@ class ParseRoute(APIView):
     """Parses an utterance, or JSON lines with one each, with what answers in the world."""
 
     permission_classes = [HasDuty]
-    parser_classes = [BoundedJSONParser, JsonLinesParser]
+    parser_classes = [BoundedJSONParser, *JSON_LINES_PARSERS]
     content_negotiation_class = JsonLinesToo
     duty = Duty.VIEW
     scopes = {"POST": Scope.READ}  # it stores nothing
@@ -287,7 +295,7 @@ class ParseRoute(APIView):
 class ParseJobs(WorldRoute):
     """Lets a worker parse JSON lines. The job says how far it is; ``jobs/ID/result/`` has the answers."""
 
-    parser_classes = [JsonLinesParser]
+    parser_classes = JSON_LINES_PARSERS
     model = Job
     filter_backends = []
     duties = {"POST": Duty.VIEW}

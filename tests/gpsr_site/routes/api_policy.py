@@ -142,6 +142,7 @@ def members(outcome: int) -> tuple[int, ...]:
 
 
 API_POLICY = [
+    Rule("api:root", YES, YES, YES, YES, YES),
     Rule("api:schema", YES, YES, YES, YES, YES),
     Rule("api:worlds", *everybody(YES)),
     # Everybody has tokens, log-ins and notices of their own alone

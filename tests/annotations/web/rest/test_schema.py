@@ -34,3 +34,32 @@ def test_every_change_names_its_version_and_its_refusals(schema):
                 assert headers["If-Match"]["required"], path
                 refused = operation["responses"]["412"]["content"]
                 assert "application/problem+json" in refused
+
+
+def test_every_field_and_every_parameter_is_described(schema):
+    silent = [
+        f"{name}.{field}"
+        for name, component in schema["components"]["schemas"].items()
+        for field, said in component.get("properties", {}).items()
+        if not said.get("description")
+    ]
+    silent += [
+        f"{method} {path} {each['name']}"
+        for path, methods in schema["paths"].items()
+        for method, operation in methods.items()
+        for each in operation.get("parameters", ())
+        if not each.get("description")
+    ]
+    assert silent == []
+
+
+def test_a_default_is_among_the_values_of_its_field(schema):
+    operation = schema["paths"]["/api/v1/worlds/{world}/parse/jobs/"]["post"]
+    parameters = {each["name"]: each["schema"] for each in operation["parameters"]}
+    assert parameters["parser"]["default"] in parameters["parser"]["enum"]
+    for path, methods in schema["paths"].items():
+        for operation in methods.values():
+            for each in operation.get("parameters", ()):
+                values = each["schema"].get("enum")
+                if values and "default" in each["schema"]:
+                    assert each["schema"]["default"] in values, (path, each["name"])

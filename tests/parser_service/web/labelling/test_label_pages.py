@@ -111,6 +111,24 @@ def test_words_become_an_alias(said, anna):
         assert answer.status_code in (409, 422)
 
 
+@pytest.mark.parametrize(
+    "text, words",
+    [("take the Weißbier to the galley", "GALLEY"), ("put the Weißbier by my chai", "chai")],
+)
+def test_words_after_a_letter_that_folds_to_two_become_an_alias(
+    sample, anna, annotator, text, words
+):
+    collect(sample.world, [text], by=annotator)
+    row = sample.world.utterances.get(text=text)
+    answer = anna.post(
+        url(row, "mend"), {"words": words, "entity": "kitchen (room)", "version": 1}, **AS_SCRIPT
+    )
+    assert answer.status_code == 200
+    assert Entity.objects.get(text="kitchen").aliases == [text.rpartition(" ")[2]]
+    inside = {"words": "all", "entity": "kitchen (room)", "version": 2}
+    assert anna.post(url(row, "mend"), inside, **AS_SCRIPT).status_code == 422
+
+
 def test_every_order_of_the_list_is_one_of_its_columns(said, anna):
     for name in SORTS:
         assert anna.get(f"/w/home/utterances/?sort={name}").status_code == 200

@@ -65,7 +65,7 @@ def wrong_values(parser: str) -> Iterator[Wrong]:
         if each.maximum is not None
     }
     yield {
-        each.name: ("other", "Select a valid choice. other is not one of the available choices.")
+        each.name: ("other", "“other” is not one of the choices. Choose one of the list.")
         for each in declared
         if each.choices
     }
