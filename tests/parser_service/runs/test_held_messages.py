@@ -82,7 +82,7 @@ def test_workers_outlive_what_a_broker_lets_them_hold(
 ):
     monkeypatch.setenv("CELERY_BROKER_URL", impatient_broker)
     workers = [start_worker("cpu"), start_worker("cpu")]
-    wait_for(lambda: Worker.objects.alive().count() == 2, "two workers show themselves")
+    wait_for(lambda: len(Worker.objects.alive()) == 2, "two workers show themselves")
     long = [run_requests.request(world, split, "seq2seq", LONG, seed=seed)[0] for seed in (1, 2)]
     for run in long:
         wait_for_epochs(run, 1)
@@ -110,9 +110,7 @@ def test_workers_outlive_what_a_broker_lets_them_hold(
 
 def _ring(connection: Connection, queue: str) -> None:
     """Send a message to a worker through ``connection``; the test's own process has another broker."""
-    current_app.send_task(
-        TASK, args=[queue], queue=message_queue(queue), connection=connection
-    )
+    current_app.send_task(TASK, args=[queue], queue=message_queue(queue), connection=connection)
 
 
 def _waiting(connection: Connection, queue: str) -> int:
