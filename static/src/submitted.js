@@ -6,7 +6,7 @@ document.addEventListener("submit", (event) => {
   const form = event.target;
   // After this, what the form sends has been read: a disabled button would not be in it.
   setTimeout(() => {
-    if (event.defaultPrevented || form.method !== "post") return;
+    if (event.defaultPrevented || form.getAttribute("method") !== "post") return;
     form.setAttribute("aria-busy", "true");
     const buttons = [...form.querySelectorAll("button:not([type=button])")].filter((each) => !each.disabled);
     buttons.forEach((button) => (button.disabled = true));
