@@ -118,7 +118,7 @@ class GrammarOracle(Parser):
                     found[key] = Candidate(
                         *(each.form_text, 0.0 - each.cost, GRAMMAR_FORM),
                         values=key[1],
-                        heard=heard.heard(each.changes),
+                        heard=heard.heard(each.path),
                     )
             if found:
                 return list(found.values())

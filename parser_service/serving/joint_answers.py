@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
 from annotations.language.grounding import Slot
-from annotations.language.plans import PlanProblem, Trouble
+from annotations.language.plans import TaskValue
 from annotations.language.recipes import (
     MOST_COMMANDS,
     Distances,
@@ -105,26 +105,34 @@ def plan_together(
     _require_few(texts)
     language = WorldLanguage.of(world)
     ask = client()
-    commands = tuple(understood(ask.parse(world.name, text, run=run), language) for text in texts)
+    commands = understand((ask.parse(world.name, text, run=run) for text in texts), language)
     plans = [each.task_plan for each in commands]
     return JointAnswer(commands, join(plans, language.recipes, distances, texts))
 
 
-def understood(answer: Mapping[str, Any], language: WorldLanguage) -> UnderstoodCommand:
-    """Return a command from the JSON of its answer."""
+def understand(
+    answers: Iterable[Mapping[str, Any]], language: WorldLanguage
+) -> tuple[UnderstoodCommand, ...]:
+    """Return commands from the JSON of their answers, in the order in which they were said.
+
+    After "go to the bedroom" a command that looks for something without a place looks there.
+    """
+    commands: list[UnderstoodCommand] = []
+    for answer in answers:
+        sent_to = commands[-1].task_plan.sends_to if commands else None
+        commands.append(_understand(answer, language, sent_to))
+    return tuple(commands)
+
+
+def _understand(
+    answer: Mapping[str, Any], language: WorldLanguage, sent_to: TaskValue | None
+) -> UnderstoodCommand:
     best = next(iter(answer["candidates"]), None)
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
-    doubts: list[PlanProblem] = []
     slots: list[Slot] = []
     if best is not None and not is_unknown:
         form = read_form(best["grounded"])
-        # Of which of several entities is meant; what else is wrong follows from the form and its open slots.
-        doubts = [
-            PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
-            for each in best["plan"]["problems"]
-            if each["code"] == Trouble.AMBIGUOUS and not each["step"]
-        ]
         slots = [
             Slot(
                 tuple(each["path"]),
@@ -132,17 +140,18 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
                 each["entity_class"],
                 tuple(each["choices"]),
                 each["is_named"],
+                likely=each["likely"],
                 phrases=tuple(each["phrases"]),
+                is_choice=each["likely"] is not None and bool(each["phrases"]),
             )
             for each in best["open_slots"]
-            if each["likely"] is None
         ]
     return UnderstoodCommand(
         answer["utterance"],
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language, slots=slots),
+        task_plan_of(form, language, slots, answer["utterance"], sent_to=sent_to),
         answer["decision"],
         answer["sureness"],
         answer["probability"],

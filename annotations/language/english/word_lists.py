@@ -220,6 +220,14 @@ ORDERING_PHRASES = _other_requests.words("ordering")
 SUBJECT_WORDS = _other_requests.words("subjects")
 SEVERAL_PHRASES = _other_requests.words("several")
 COUNTING_PHRASES = _other_requests.words("counting")
+WANTING_PHRASES = _other_requests.words("wanting")
+PAST_VERBS = _other_requests.words("past")
+ADVERBS = _other_requests.words("adverbs")
+TIME_PHRASES = _other_requests.words("times")
+REPORTING_VERBS = _other_requests.words("reporting")
+THINKING_PHRASES = _other_requests.words("thinking")
+IMAGINING_PHRASES = _other_requests.words("imagining")
+INDEFINITE_PERSONS = _other_requests.words("indefinite_persons")
 
 # Words that nobody has to look up: those of the lists, which say little by themselves.
 ENGLISH_WORDS = frozenset(

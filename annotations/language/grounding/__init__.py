@@ -17,8 +17,10 @@ from annotations.language.grounding.deanonymizer import (
 )
 from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
+from annotations.language.grounding.heard_changes import HeardChange, applied
 from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
+    NOT_UNDERSTOOD,
     choices_of,
     is_asked_plainly,
     named_entities,
@@ -36,14 +38,11 @@ from annotations.language.grounding.roles import (
     tokens_of,
     words_of,
 )
-from annotations.language.grounding.utterance_lattice import (
-    HeardChange,
-    HeardLattice,
-    UtteranceReader,
-)
+from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
 from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
+    "NOT_UNDERSTOOD",
     "QUESTION_WORD",
     "Anonymized",
     "Anonymizer",
@@ -62,6 +61,7 @@ __all__ = [
     "Span",
     "UtteranceMentions",
     "UtteranceReader",
+    "applied",
     "are_alike",
     "as_pair",
     "choices_of",

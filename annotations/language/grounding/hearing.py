@@ -46,16 +46,22 @@ from annotations.language.english import (
 )
 from annotations.language.grammar import Arc, Lattice
 from annotations.language.grounding.anonymizer import Reading, readings_of
+from annotations.language.grounding.heard_changes import (
+    HeardChange,
+    ReadWords,
+    applied,
+    changes_between,
+    fold,
+    spoken_words,
+)
 from annotations.language.grounding.utterance_lattice import (
     SKIPPED,
     Everything,
-    HeardChange,
     HeardLattice,
+    Name,
     Skip,
     UtteranceReader,
-    fold,
     skipping,
-    spoken_words,
 )
 
 # Costs, beside those of near words.
@@ -78,8 +84,6 @@ _FUNCTION_WORDS = BOUNDARIES | DETERMINERS | PLACE_PREPOSITIONS
 _LIKE_PREPOSITIONS = frozenset(("two", "2", "four", "4"))
 _CUT_OFF = frozenset("-‐‑–—…")
 _WORD = re.compile(r"\w")
-_COMMA = re.compile(" ?,?")
-_LEFT_OVER = re.compile(r" ?([,;:])(?: ?[,;:])*+")
 _APOSTROPHE = re.compile("['’]")
 
 
@@ -224,8 +228,7 @@ class _Noisy(Everything):
 
     def __init__(self, reader: HearingReader, utterance: str) -> None:
         super().__init__(reader, utterance)
-        self.changes: dict[HeardChange, int] = {}
-        self._always = self._split_tokens()
+        self._split_tokens()
         self._kept = [each in _KEPT or each.isdigit() for each in self.folded]
         # What may be passed over inside a name.
         self._inside: defaultdict[int, list[tuple[int, str, int]]] = defaultdict(list)
@@ -252,32 +255,26 @@ class _Noisy(Everything):
             return None
         lattice = Lattice(_spread(paths), end * _INNER)
         places = tuple(token for token in self.tokens for _ in range(_INNER))
-        changes = tuple(self.changes)
-        return HeardLattice(lattice, tuple(self.spans), places, changes, self._always)
-
-    def _change(self, kind: str, start: int, stop: int, heard: str) -> tuple[int, ...]:
-        """Return the number of a change of the tokens from ``start`` to ``stop``."""
-        if start < stop:
-            first, last = self.tokens[start][0], self.tokens[stop - 1][1]
-        else:
-            first = last = (
-                self.tokens[start][0] if start < len(self.tokens) else len(self.utterance)
-            )
-        change = HeardChange(kind, first, last, self.utterance[first:last], heard)
-        return (self.changes.setdefault(change, len(self.changes)),)
+        return self._made(lattice, places)
 
     def cleaned(self) -> HeardText:
         """Return the utterance with its safe changes; as it is where nothing would be left or it is too long."""
         if not self.tokens or len(self.tokens) > MOST_TOKENS:
             return HeardText(self.utterance)
         self._named_at = {(arc.start, arc.end) for arc in self._entity_arcs()}
-        taken: set[int] = set()
+        taken: dict[int, ReadWords] = {}
         for start, stop, kind, heard in (*self._removed(), *self._mended()):
-            if taken.isdisjoint(range(start, stop)):
-                taken.update(range(start, stop))
-                self._change(kind, start, stop, heard)
-        changes = tuple(sorted(self.changes, key=lambda each: each.start))
-        text = _changed(self.utterance, changes)
+            if taken.keys().isdisjoint(range(start, stop)):
+                first, last = self.tokens[start][0], self.tokens[stop - 1][1]
+                change = HeardChange(kind, first, last, self.utterance[first:last], heard)
+                read = ReadWords(last, heard, (change,))
+                taken |= dict.fromkeys(range(start, stop), read)
+        kept = (
+            taken.get(place, ReadWords(end, text))
+            for place, ((_, end), text) in enumerate(zip(self.tokens, self.texts, strict=True))
+        )
+        changes = changes_between(self.utterance, dict.fromkeys(kept))
+        text = applied(self.utterance, changes)
         return HeardText(text, changes) if _WORD.search(text) else HeardText(self.utterance)
 
     def _removed(self) -> Iterator[tuple[int, int, str, str]]:
@@ -337,12 +334,11 @@ class _Noisy(Everything):
                     kind = "joined" if stop - start > 1 else "spelling"
                     yield start, stop, kind, name
 
-    def _split_tokens(self) -> tuple[int, ...]:
-        """Make two tokens of one that is no word and that two known words are, and return the changes."""
+    def _split_tokens(self) -> None:
+        """Make two tokens of one that is no word and that two known words are."""
         tokens = []
-        changes: tuple[int, ...] = ()
         known = self.reader.known_words
-        for place, ((start, end), folded) in enumerate(zip(self.tokens, self.folded, strict=True)):
+        for (start, end), folded in zip(self.tokens, self.folded, strict=True):
             cuts = (
                 start + cut
                 for cut in range(SHORTEST_PART, end - start - SHORTEST_PART + 1)
@@ -352,15 +348,12 @@ class _Noisy(Everything):
             is_word = folded in known or is_common(folded) or folded in self.reader.names
             is_short = len(folded) == end - start <= LONGEST_SPLIT
             if is_short and not is_word and (cut := next(cuts, None)):
-                words = f"{self.utterance[start:cut]} {self.utterance[cut:end]}"
-                changes += self._change("split", place, place + 1, words)
                 tokens += [(start, cut), (cut, end)]
             else:
                 tokens.append((start, end))
         self.tokens = tokens
         self.texts = [self.utterance[start:end] for start, end in tokens]
         self.folded = [fold(text) for text in self.texts]
-        return changes
 
     # What is read as another word.
 
@@ -500,7 +493,9 @@ class _Noisy(Everything):
             )
             token = f"<{reading.entity_class}>"
             characters = self.tokens[start][0], self.tokens[end - 1][1]
-            yield from self._arcs_for([reading], token, (start, end), characters, least, changes)
+            yield from self._arcs_for(
+                [Name(name, reading)], token, (start, end), characters, least, changes
+            )
 
     def _walk(self, start: int) -> Iterator[tuple[int, tuple[str, ...], _Way]]:
         """Yield where a name that begins at ``start`` can end, its folded words, and how it is read."""
@@ -697,21 +692,6 @@ class _Noisy(Everything):
             return False
         kinds = (DETERMINERS, PLACE_PREPOSITIONS, {again})
         return any(words[0] in kind and again in kind for kind in kinds)
-
-
-def _changed(utterance: str, changes: Sequence[HeardChange]) -> str:
-    """Return an utterance with changes made that are in its order; signs that are left over go."""
-    pieces, end = [], 0
-    for change in changes:
-        before, after = utterance[end : change.start], change.end
-        # The commas around a filler go with it.
-        if change.kind == "filler" and before.rstrip().endswith(","):
-            before, after = before.rstrip(" ,") + " ", change.end
-            after += len(_COMMA.match(utterance, change.end)[0])  # type: ignore[index]
-        pieces += [before, change.heard]
-        end = after
-    text = " ".join("".join((*pieces, utterance[end:])).split())
-    return _LEFT_OVER.sub(r"\1", text).lstrip(" ,;:.!?-")
 
 
 def _as_written(heard: str, name: str) -> str:

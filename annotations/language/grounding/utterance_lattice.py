@@ -11,8 +11,6 @@ What the third one reads otherwise than it is written costs something, so that t
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -38,11 +36,16 @@ from annotations.language.grounding.anonymizer import (
     Span,
     readings_of,
 )
+from annotations.language.grounding.heard_changes import (
+    HeardChange,
+    ReadWords,
+    changes_between,
+    fold,
+    spoken_words,
+    tokens_of,
+)
 from annotations.language.ontology import Ontology
 
-# A word with the apostrophes inside it, a class token, or a sign.
-_TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")
-_SIGNS_INSIDE = re.compile(r"[^\w]|_")
 _HYPHENS = frozenset("-‐‑–")
 _ARTICLES = {"a": "an", "an": "a"}
 # Costs of reading something otherwise than it is written.
@@ -55,39 +58,41 @@ DIGITS = "0123456789"
 
 
 @dataclass(frozen=True, slots=True)
-class HeardChange:
-    """What was heard otherwise than it was said, in ``utterance[start:end]``, which is ``said``.
-
-    ``heard`` is empty for what was passed over, ``said`` for what was left out. ``kind`` is one of "filler",
-    "repeated", "repair", "courtesy", "contraction", "article", "joined", "split", "number", "sound", "spelling",
-    "inflection" and "alias".
-    """
-
-    kind: str
-    start: int
-    end: int
-    said: str
-    heard: str
-
-
-@dataclass(frozen=True, slots=True)
 class HeardLattice:
-    """A lattice, the entities for which its numbered arcs stand, and what its arcs change.
+    """A lattice, the entities for which its numbered arcs stand with the names by which they were called, and why its
+    arcs change what they do.
 
     ``tokens`` says which characters of the utterance lie between a place and the next one; it is empty where the
-    lattice has no such places. The changes numbered ``always`` are those of every path.
+    lattice reads words as they are.
     """
 
     lattice: Lattice
     spans: tuple[Span, ...] = ()
     tokens: tuple[tuple[int, int], ...] = ()
+    utterance: str = ""
+    names: tuple[str, ...] = ()
     changes: tuple[HeardChange, ...] = ()
-    always: tuple[int, ...] = ()
 
-    def heard(self, changes: Sequence[int]) -> tuple[HeardChange, ...]:
-        """Return what a derivation changes, in the order of the utterance."""
-        made = {self.changes[number] for number in (*self.always, *changes)}
-        return tuple(sorted(made, key=lambda each: (each.start, each.end, each.kind, each.heard)))
+    def heard(self, path: Sequence[Arc]) -> tuple[HeardChange, ...]:
+        """Return what is read otherwise than it was said on a path from the first place to the last one, in order."""
+        if not self.tokens:
+            return ()
+        read: list[ReadWords] = []
+        words: list[str] = []
+        reasons: list[HeardChange] = []
+        for arc in path:
+            words.append(self.names[arc.number] if arc.number >= 0 else arc.word)
+            reasons += (self.changes[number] for number in arc.changes)
+            # Two arcs may share a token, as "what" and "is" do "what's".
+            if (
+                not 0 < arc.end < len(self.tokens)
+                or self.tokens[arc.end - 1] != self.tokens[arc.end]
+            ):
+                is_last = arc.end == len(self.tokens)
+                end = len(self.utterance) if is_last else self.tokens[arc.end][0]
+                read.append(ReadWords(end, " ".join(words), tuple(reasons)))
+                words, reasons = [], []
+        return changes_between(self.utterance, read)
 
     def values(self, arcs: Sequence[int | None]) -> tuple[str | None, ...]:
         """Return the entity of each arc, None for an arc that stands for none."""
@@ -122,7 +127,7 @@ class UtteranceReader:
         for entity in self._ontology.entities:
             for words, reading in readings_of(entity, self._ontology.classes):
                 if key := "".join(fold(each) for each in spoken_words(words)):
-                    found[key].append(Name(words.casefold(), reading))
+                    found[key].append(Name(words, reading))
         return {key: tuple(dict.fromkeys(names))[:MOST_NAMESAKES] for key, names in found.items()}
 
     @cached_property
@@ -140,23 +145,13 @@ class UtteranceReader:
         return word in self._vocabulary
 
 
-def fold(word: str) -> str:
-    """Return a word without its case, accents, and signs such as apostrophes and hyphens; a lone sign stays.
-
-    Full-width letters and ligatures are the letters that they stand for.
-    """
-    parts = unicodedata.normalize("NFKD", word.casefold())
-    letters = "".join(each for each in parts if not unicodedata.combining(each))
-    return _SIGNS_INSIDE.sub("", letters) or word
-
-
 def _words(text: str) -> list[str]:
     return text.replace(",", " , ").split()
 
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """How an entity is called, without its case."""
+    """How an entity is called."""
 
     spelling: str
     reading: Reading
@@ -164,26 +159,11 @@ class Name:
     def cost(self, said: str) -> int:
         """Return what it costs to hear the name in ``said``."""
         is_inflected = self.reading.likeness >= Likeness.INFLECTED
-        return (0 if said == self.spelling else FOLDED) + (FOLDED if is_inflected else 0)
+        return (0 if said == self.spelling.casefold() else FOLDED) + (FOLDED if is_inflected else 0)
 
     def rank(self, said: str) -> tuple[int, Likeness]:
         """The names of the lowest rank are meant: at equal cost, that of an entity itself before an alias."""
         return self.cost(said), self.reading.likeness
-
-
-def tokens_of(text: str) -> list[tuple[int, int]]:
-    """Return where the words, class tokens and signs of a text begin and end.
-
-    Vowel signs and accents that are characters of their own belong to their words.
-    """
-    marked = "".join("_" if unicodedata.category(each)[0] == "M" else each for each in text)
-    return [match.span() for match in _TOKEN.finditer(marked)]
-
-
-def spoken_words(text: str) -> list[str]:
-    """Return the words of a name, without signs between them."""
-    tokens = (text[start:end] for start, end in tokens_of(text))
-    return [token for token in tokens if token[0].isalnum()]
 
 
 def _longest(heard: Anonymized) -> HeardLattice:
@@ -243,6 +223,8 @@ class Everything:
         self.texts = [utterance[start:end] for start, end in self.tokens]
         self.folded = [fold(text) for text in self.texts]
         self.spans: list[Span] = []
+        self.names: list[str] = []  # of the spans, as they were called
+        self.changes: dict[HeardChange, int] = {}
 
     def heard(self) -> HeardLattice:
         named = list(self._entity_arcs())
@@ -250,7 +232,22 @@ class Everything:
         arcs += self._repetitions(named)
         end = len(self.tokens)
         lattice = Lattice(skipping(arcs, self.skips(), end), end)
-        return HeardLattice(lattice, tuple(self.spans), tuple(self.tokens))
+        return self._made(lattice, tuple(self.tokens))
+
+    def _made(self, lattice: Lattice, tokens: tuple[tuple[int, int], ...]) -> HeardLattice:
+        spans, names, changes = tuple(self.spans), tuple(self.names), tuple(self.changes)
+        return HeardLattice(lattice, spans, tokens, self.utterance, names, changes)
+
+    def _change(self, kind: str, start: int, stop: int, heard: str) -> tuple[int, ...]:
+        """Return the number of a change of the tokens from ``start`` to ``stop``."""
+        if start < stop:
+            first, last = self.tokens[start][0], self.tokens[stop - 1][1]
+        else:
+            first = last = (
+                self.tokens[start][0] if start < len(self.tokens) else len(self.utterance)
+            )
+        change = HeardChange(kind, first, last, self.utterance[first:last], heard)
+        return (self.changes.setdefault(change, len(self.changes)),)
 
     def _is_word(self, place: int) -> bool:
         return self.texts[place][0].isalnum()
@@ -354,18 +351,18 @@ class Everything:
         by_class: defaultdict[str, list[Name]] = defaultdict(list)
         for name in names:
             # A sign at the end belongs to a name that is written so, and to no other.
-            if is_word or name.spelling == said:
+            if is_word or name.spelling.casefold() == said:
                 by_class[name.reading.entity_class].append(name)
         for entity_class, called in by_class.items():
             token = f"<{entity_class}>"
             if self.reader.has(token):
                 least = min(name.rank(said) for name in called)
-                closest = [name.reading for name in called if name.rank(said) == least]
+                closest = [name for name in called if name.rank(said) == least]
                 yield from self._arcs_for(closest, token, (start, end), (first, last), least[0])
 
     def _arcs_for(
         self,
-        readings: Sequence[Reading],
+        called: Sequence[Name],
         token: str,
         places: tuple[int, int],
         characters: tuple[int, int],
@@ -373,11 +370,12 @@ class Everything:
         changes: tuple[int, ...] = (),
     ) -> Iterator[Arc]:
         """Yield an arc for each value that the words can mean."""
-        for value in dict.fromkeys(each.value for each in readings):
-            same = [each for each in readings if each.value == value]
-            others = tuple(each.entity for each in same[1:])
+        for value in dict.fromkeys(each.reading.value for each in called):
+            same = [each for each in called if each.reading.value == value]
+            others = tuple(each.reading.entity for each in same[1:])
             arc = Arc(*places, token, cost, len(self.spans), changes)
-            first = same[0]
+            first = same[0].reading
+            self.names.append(same[0].spelling)
             self.spans.append(
                 Span(
                     *(*characters, token, first.entity_class, first.entity, value),
@@ -389,7 +387,14 @@ class Everything:
 
     def skips(self) -> list[Skip]:
         """Return what may be passed over. It costs by its signs and words, so that passing over less is cheaper."""
-        return [Skip(start, stop, SKIPPED * (stop - start)) for start, stop in self._skipped()]
+        return [
+            Skip(
+                *(start, stop, SKIPPED * (stop - start)),
+                # A sign alone is no change.
+                self._change("courtesy", start, stop, "") if self._is_word(start) else (),
+            )
+            for start, stop in self._skipped()
+        ]
 
     def _skipped(self) -> list[tuple[int, int]]:
         """Return the ranges of tokens that may be passed over, as first and next place."""

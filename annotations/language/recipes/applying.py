@@ -14,6 +14,7 @@ from annotations.language.plans import (
     Referred,
     Step,
     StepResult,
+    TaskValue,
     Value,
     Words,
 )
@@ -39,12 +40,17 @@ from annotations.language.recipes.task_plan import (
     TaskPlan,
     TaskProblem,
 )
-from annotations.language.recipes.values import TaskValue, kinds_of, with_results
+from annotations.language.recipes.values import kinds_of, renumbered, with_results
 
 _CURRENT = Words("current")
 
 
-def apply_recipes(plan: Plan, book: RecipeBook, usual: UsualPlaces | None = None) -> TaskPlan:
+def apply_recipes(
+    plan: Plan,
+    book: RecipeBook,
+    usual: UsualPlaces | None = None,
+    sent_to: TaskValue | None = None,
+) -> TaskPlan:
     """Return the primitives that do what a plan says, in order.
 
     The most specific recipe that fits is used for each action. Questions to the operator come first, while
@@ -57,8 +63,10 @@ def apply_recipes(plan: Plan, book: RecipeBook, usual: UsualPlaces | None = None
         book: primitives and recipes; rows with errors are not used.
         usual: where the things of a category are, if the command does not say where to look; without it
             they are where the robot is.
+        sent_to: where the command before has sent the robot (``TaskPlan.sends_to``): what has no place is
+            looked for there.
     """
-    return _Applier(plan, book, usual or {}).task_plan()
+    return _Applier(plan, book, usual or {}, sent_to).task_plan()
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +79,14 @@ class _Fit:
 
 
 class _Applier:
-    def __init__(self, plan: Plan, book: RecipeBook, usual: UsualPlaces) -> None:
+    def __init__(
+        self, plan: Plan, book: RecipeBook, usual: UsualPlaces, sent_to: TaskValue | None
+    ) -> None:
         self._plan = plan
         self._book = book
         self._steps = {step.number: step for step in plan.steps}
-        self._situation = Situation(usual=usual)
+        self._situation = Situation(usual=usual, sent_to=sent_to)
+        self._sends_to: TaskValue | None = None
         self._numbers: dict[int, int] = {}  # step with a result → the step of the task plan
 
     def task_plan(self) -> TaskPlan:
@@ -85,15 +96,19 @@ class _Applier:
             if step.number not in absorbed:
                 self._apply(step, fits[step.number])
         steps = with_texts(self._situation.steps, step_texts(self._situation.steps))
-        first = {step.source: step.number for step in reversed(steps)}
+        of_source: dict[int, list[int]] = {}
+        for done in steps:
+            of_source.setdefault(done.source, []).append(done.number)
         of_plan = (
-            TaskProblem.of_plan(each, first.get(each.step, 0)) for each in self._plan.problems
+            TaskProblem.of_plan(each, of_source.get(each.step, [0])[0])
+            for each in self._plan.problems
         )
         own = (  # one that is about a step which was left out is about the whole plan
             each if each.step <= len(steps) else replace(each, step=0)
             for each in self._situation.problems
         )
-        return TaskPlan(steps, (*of_plan, *own))
+        unresolved = (renumbered(each, of_source, self._numbers) for each in self._plan.unresolved)
+        return TaskPlan(steps, (*of_plan, *own), tuple(unresolved), self._sends_to)
 
     def _best_fit(self, step: Step) -> _Fit | None:
         recipes = self._book.recipes_of(step.predicate)
@@ -144,6 +159,7 @@ class _Applier:
         names_of = {name: self._resolved(value) for name, value in fit.values.items()}
         for call in fit.recipe.calls:
             self._do(call, names_of, step)
+        self._sends_to = self._situation.sent_to if self._only_moves(fit.recipe) else None
 
     def _do(self, call: Call, names: dict[str, TaskValue], step: Step) -> None:
         primitive = self._book.primitive(call.primitive)
@@ -158,12 +174,19 @@ class _Applier:
             if call.result:
                 names[call.result] = StepResult(done.number)
 
+    def _only_moves(self, recipe: Recipe) -> bool:
+        called = (self._book.primitive(call.primitive) for call in recipe.calls)
+        return all(each is not None and each.effect(EffectKind.MOVES) for each in called)
+
     def _note_sending(self, call: Call, primitive: Primitive) -> None:
-        """Remember whether the command itself names the place to which the robot has moved."""
+        """Remember the place to which the robot has moved, if the command itself names it."""
         moves = primitive.effect(EffectKind.MOVES)
         for parameter, argument in zip(primitive.parameters, call.arguments, strict=False):
             if moves is not None and moves.subject == parameter.name:
-                self._situation.is_sent |= isinstance(argument, Name) and argument.part is None
+                place = self._situation.place
+                is_named = isinstance(argument, Name) and argument.part is None
+                if is_named and not isinstance(place, Operator | Somewhere):
+                    self._situation.sent_to = place
 
     def _value(
         self,

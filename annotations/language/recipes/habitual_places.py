@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TypeAlias
 
+from annotations.language.english import spellings
 from annotations.language.ontology import Ontology
-from annotations.language.plans import AT, Described, Lookup, Named
-from annotations.language.recipes.values import TaskValue
+from annotations.language.plans import (
+    AT,
+    Described,
+    Lookup,
+    Named,
+    TaskValue,
+)
 
 UsualPlaces: TypeAlias = Mapping[str, Named]
 
 
 def usual_places(ontology: Ontology, lookup: Lookup | None = None) -> UsualPlaces:
-    """Return the default location of each category that has one; the first where it has several.
+    """Return the default location of each category that has one, under each of its names; the first where it has
+    several.
 
     Args:
         ontology: its categories say where their things are kept.
@@ -25,7 +32,10 @@ def usual_places(ontology: Ontology, lookup: Lookup | None = None) -> UsualPlace
         text = category.attribute("defaultLocation") or category.attribute("room")
         place, _ = lookup.value(text, AT, 1) if text else (None, False)
         if isinstance(place, Named):
-            places.setdefault(category.text, place)
+            singular = category.attribute("singular")
+            for noun in (category.text, *category.aliases, *([singular] if singular else [])):
+                for name in (noun, *spellings(noun)):
+                    places.setdefault(name.casefold(), place)
     return places
 
 
@@ -34,7 +44,7 @@ def usual_place(value: TaskValue, places: UsualPlaces) -> Named | None:
     conditions = value.conditions if isinstance(value, Described) else ()
     for each in (value, *(each for condition in conditions for each in condition.values)):
         if isinstance(each, Named):
-            place = places.get(each.attributes.get("category", each.text))
+            place = places.get(each.attributes.get("category", each.text).casefold())
             if place is not None:
                 return place
     return None

@@ -6,12 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from annotations.language.plans import AT, Described, Operator, StepResult, Words
+from annotations.language.plans import (
+    AT,
+    Described,
+    Operator,
+    StepResult,
+    TaskValue,
+    Words,
+)
 from annotations.language.recipes.habitual_places import UsualPlaces, usual_place
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
 from annotations.language.recipes.task_plan import RecipeTrouble, TaskProblem, TaskStep
 from annotations.language.recipes.values import (
-    TaskValue,
     content,
     is_named_person,
     said_place,
@@ -47,7 +53,7 @@ class Situation:
     # commands mean the same person if they name one, and two things.
     commands: Mapping[str, int] = field(default_factory=dict)
     usual: UsualPlaces = field(default_factory=dict)
-    is_sent: bool = False  # whether the command has said where the robot is to look
+    sent_to: TaskValue | None = None  # where the robot is to look, if somebody has said that
     moved_by: int = 0  # the step that has led the robot to its place; 0 where it began
     _taken_by: int = 0
     _taken_at: Place = field(default_factory=Operator)
@@ -61,8 +67,8 @@ class Situation:
     def place_of(self, value: TaskValue) -> Place:
         """Return where something is.
 
-        That is in the gripper, where it was left, or where it is said to be. Else it is here, or where it
-        usually is, unless the command has sent the robot here.
+        That is in the gripper, where it was left, or where it is said to be. Else it is where the robot was
+        sent to; if it was sent nowhere, where it usually is, or here.
         """
         value = self.known(value)
         owner = _owner(value)
@@ -74,7 +80,9 @@ class Situation:
         said = said_place(value)
         if isinstance(said, Described) and said is not value:
             return self.known(said)
-        return said or (None if self.is_sent else usual_place(value, self.usual)) or HERE
+        if said is None and self.sent_to is not None:
+            return HERE if self.is_here(self.sent_to) else self.sent_to
+        return said or usual_place(value, self.usual) or HERE
 
     def known(self, value: TaskValue) -> TaskValue:
         """Return the description under which something is known already."""
@@ -216,7 +224,8 @@ class Situation:
 
     def _move(self, place: Place, number: int) -> None:
         self.place = place
-        self.is_sent = False
+        if self.sent_to is not None and not are_equal(self.sent_to, place):
+            self.sent_to = None
         self.moved_by = number
         self._found.clear()
         self._last_here = {number}

@@ -9,9 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from annotations.language.plans import PlanOf, PlanProblem
+from annotations.language.plans import (
+    PlanOf,
+    PlanProblem,
+    TaskValue,
+)
 from annotations.language.recipes.rows import Primitive
-from annotations.language.recipes.values import TaskValue
 
 _FOLDER = Path(__file__).parent
 
@@ -98,7 +101,13 @@ class TaskStep:
 
 @dataclass(frozen=True, slots=True)
 class TaskPlan(PlanOf[TaskStep, TaskProblem]):
-    """The primitives of a robot; its data follow ``task_plan_schema``."""
+    """The primitives of a robot; its data follow ``task_plan_schema``.
+
+    ``sends_to`` is the place to go to with which the command ends: a command after it that looks for something
+    looks there. None where it ends with something else.
+    """
+
+    sends_to: TaskValue | None = field(default=None, compare=False)
 
 
 @cache

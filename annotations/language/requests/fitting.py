@@ -30,7 +30,11 @@ from annotations.language.requests.word_use import Place, Role, WordUse, role_at
 
 EXCHANGED = 1.5  # log odds by which two mentions fit better where the other one is
 ELSEWHERE = 4.0  # log odds by which a mention fits another role of the same action better
+IMPOSSIBLE = (
+    8.0  # log odds by which a place fits better where a thing is, and the thing where the place is
+)
 PLACE = "location"  # and what is alike: what may be of somebody, of something, or a destination
+_THINGS = frozenset(("object", "category"))
 GOAL = "argument 1"
 MOST_MENTIONS = 8  # of one value that are compared
 MOST_SLOTS = 16  # that are compared in pairs
@@ -63,6 +67,12 @@ class Exchange:
 
     slots: tuple[Slot, ...]
     nats: float
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether each of two slots can have what the other one has: a desk cannot be put on an apple."""
+        classes = [each.entity_class for each in self.slots]
+        return len(classes) == 2 and are_alike(*classes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,10 +287,13 @@ def _exchanges(
     for one, other in combinations(filled, 2):
         if one.slot.filler == other.slot.filler or one.role.whole == other.role.whole:
             continue
-        if are_alike(one.slot.entity_class, other.slot.entity_class):
+        pair = one.slot.entity_class, other.slot.entity_class
+        # "Put the desk on the apple" names a place where a thing stands.
+        is_of_both = any(are_alike(each, PLACE) for each in pair) and not _THINGS.isdisjoint(pair)
+        if are_alike(*pair) or is_of_both:
             here = _pair(one.places, one.role, other.places, other.role, use)
             nats = _pair(other.places, one.role, one.places, other.role, use) - here
-            if nats > EXCHANGED:
+            if nats > (EXCHANGED if are_alike(*pair) else IMPOSSIBLE):
                 found |= {one.slot.path, other.slot.path}
                 yield Exchange((one.slot, other.slot), nats)
     for each in filled:

@@ -1,4 +1,4 @@
-"""Words that make another request of a command: that forbid it, set a condition, ask for several, or take it back.
+"""What makes another request of a command, or none: what forbids, sets a condition, takes back, or asks for nothing.
 
 No form has a place for them, so a parser that answers with the rest does what nobody asked for: "don't bring me the
 honey" brings the honey.
@@ -30,6 +30,7 @@ from annotations.language.english import (
     TAKING_BACK_PHRASES,
 )
 from annotations.language.grounding import Anonymized
+from annotations.language.requests.stating import states
 
 _LONGEST_BEFORE = 40  # characters before a name in which a number is looked for
 
@@ -41,6 +42,7 @@ class Qualified(StrEnum):
     CONDITION = "condition"
     NUMBER = "number"
     TAKEN_BACK = "taken_back"
+    STATEMENT = "statement"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +125,9 @@ def objections(heard: Anonymized) -> tuple[Objection, ...]:
         end = span.end
     text = (text + heard.original[end:]).replace("’", "'")
     found = [*_qualified(text, heard.original), *_numbers(heard)]
+    if states(text):
+        message = "This tells me something and asks me for nothing."
+        found.append(Objection(Qualified.STATEMENT, message, 0, len(text)))
     return tuple(sorted(found, key=lambda each: each.start))
 
 

@@ -19,6 +19,7 @@ from annotations.language.errors import LanguageError
 from annotations.language.forms import Constant, Form, canonical_text, walk
 from annotations.language.grammar import (
     Alternative,
+    Arc,
     Budget,
     Chart,
     Expander,
@@ -50,12 +51,16 @@ MOST_READINGS = 2  # of one rule between two places: two show an ambiguity
 STEPS_PER_FORM, STEPS_PER_JOIN = 300, 50
 
 
+# The arcs that words are read by, in their order: one after the other of two paths, so that joining them is cheap.
+Path: TypeAlias = "Arc | tuple[Path, Path] | tuple[()]"
+
+
 @dataclass(frozen=True, slots=True)
 class ChartDerivation:
     """One way to derive a command: the template of a task category and the form it gives.
 
     ``arcs`` are the numbers of the arcs that fill the class tokens of the form, in order; None for one that
-    no arc with a number fills. ``cost`` is that of the path through the lattice, ``changes`` are those of its arcs.
+    no arc with a number fills. ``path`` are the arcs of the lattice that it reads, ``cost`` is what they cost.
     """
 
     form_text: str
@@ -63,7 +68,7 @@ class ChartDerivation:
     template_index: int
     arcs: tuple[int | None, ...] = ()
     cost: int = field(default=0, compare=False)
-    changes: tuple[int, ...] = field(default=(), compare=False)
+    path: tuple[Arc, ...] = field(default=(), compare=False)
 
 
 class TemplateChart:
@@ -173,7 +178,7 @@ class _TemplateSet:
                     text = canonical_text(form.anonymized)
                     yield ChartDerivation(
                         *(text, self.category.name, index, _arcs_of(form)),
-                        *(form.cost, form.changes),
+                        *(form.cost, tuple(_arcs_on(form.path))),
                     )
 
 
@@ -208,7 +213,7 @@ class _Filled:
     aligned: Form
     precedence: Precedence
     cost: int
-    changes: tuple[int, ...] = field(default=(), compare=False)
+    path: Path = field(default=(), compare=False)
 
 
 # What a nonterminal became: a form, or the leaves that stand for its words. The number of a wildcard is its arc's.
@@ -229,11 +234,11 @@ class _Reading:
     slots: tuple[tuple[Wildcard, int], ...] = ()
     inner: tuple[tuple[Wildcard, int], ...] = ()
     leaves: Leaves = ()
-    changes: tuple[int, ...] = field(default=(), compare=False)
+    path: Path = field(default=(), compare=False)
 
     @property
     def said(self) -> object:
-        """All but the cost and the changes: of two readings that say the same, the cheaper one counts."""
+        """All but the cost and the path: of two readings that say the same, the cheaper one counts."""
         return self.bound, self.slots, self.inner, self.leaves
 
     def then(self, other: _Reading) -> _Reading | None:
@@ -248,7 +253,7 @@ class _Reading:
             self.slots + other.slots,
             self.inner + other.inner,
             self.leaves + other.leaves,
-            self.changes + other.changes,
+            (self.path, other.path),
         )
 
 
@@ -296,7 +301,7 @@ class _Forest:
         if rule.name in asker.composed:
             lines = [self.owner.lines[line] for line in self.owner.book.line_rules[rule.name]]
             readings = [
-                _Reading(form.cost, ((rule.name, form),), changes=form.changes)
+                _Reading(form.cost, ((rule.name, form),), path=form.path)
                 for line in lines
                 if end in self.chart.ends(line.number, start)
                 for form in self.forms(line, start, end)
@@ -311,7 +316,7 @@ class _Forest:
                         tuple(sorted(bound, key=_name)),
                         inner=inside.slots + inside.inner,
                         leaves=inside.leaves if keeps else (),
-                        changes=inside.changes,
+                        path=inside.path,
                     )
                 )
         else:
@@ -372,7 +377,7 @@ class _Forest:
                 leaves = (leaf,) if keeps else ()
                 yield (
                     arc.end,
-                    [_Reading(arc.cost, slots=slots, leaves=leaves, changes=arc.changes)],
+                    [_Reading(arc.cost, slots=slots, leaves=leaves, path=arc)],
                 )
 
 
@@ -438,7 +443,7 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
         return None
     inner = tuple(_words(values[name]) for name in rule.names)
     precedence: Precedence = inner if rule.line is None else (rule.line, *inner)
-    return _Filled(anonymized, aligned, precedence, reading.cost, reading.changes)
+    return _Filled(anonymized, aligned, precedence, reading.cost, reading.path)
 
 
 class _SlotArcs:
@@ -498,6 +503,16 @@ def _repeated(book: RuleBook, rule: int) -> frozenset[str]:
             repeated.update(name for name, count in counts.items() if count > 1)
             waiting += rules
     return frozenset(repeated)
+
+
+def _arcs_on(path: Path) -> Iterator[Arc]:
+    waiting = [path]
+    while waiting:
+        match waiting.pop():
+            case Arc() as arc:
+                yield arc
+            case (first, second):
+                waiting += [second, first]
 
 
 def _name(binding: tuple[str, Value]) -> str:

@@ -21,6 +21,7 @@ KINDS = {
     "spelling": "a near spelling",
     "inflection": "singular or plural",
     "alias": "another word for it",
+    "reference": "somebody or something said before",
 }
 
 

@@ -222,14 +222,61 @@ def test_questions_come_first_while_the_robot_is_with_the_operator():
 def test_what_has_no_place_is_looked_for_where_the_robot_is_sent_or_where_it_usually_is(
     form, places
 ):
+    plan = apply_recipes(make_plan(read_form(form), HOME), default_book(), drinks_on_the_shelf())
+    assert places_of(plan) == places
+
+
+A_TEA, TEA_THERE = (
+    '(find (λ$1:e (is_a $1 "tea")))',
+    '(find (λ$1:e (is_a $1 "tea") (at $1 "attic")))',
+)
+
+
+@pytest.mark.parametrize(
+    ("forms", "places"),
+    [
+        (['(go "attic")', A_TEA], ["attic", "operator"]),
+        (['(go "attic")', '(bring (λ$1:e (is_a $1 "tea")))'], ["attic", "operator"]),
+        (['(go "attic")', '(bring (λ$1:e (is_a $1 "drink")))'], ["attic", "operator"]),
+        (['(sequence (go "stool") (go "attic"))', A_TEA], ["stool", "attic", "operator"]),
+        (['(go "stool")', TEA_THERE], ["stool", "attic", "operator"]),
+        ([TEA_THERE, '(go "stool")'], ["attic", "stool", "operator"]),
+        ([A_TEA, '(go "attic")'], ["shelf", "attic", "operator"]),
+        (
+            ['(go "attic")', f"(sequence {A_TEA} (bring it))", A_TEA],
+            ["attic", "operator", "shelf", "operator"],
+        ),
+        (['(go "attic")', "(bring UNKNOWN)"], ["attic", "operator"]),
+    ],
+)
+def test_a_command_after_one_to_go_somewhere_looks_there(forms, places):
+    usual, plans = drinks_on_the_shelf(), []
+    for form in forms:
+        sent_to = plans[-1].sends_to if plans else None
+        plan = make_plan(read_form(form), HOME)
+        plans.append(apply_recipes(plan, default_book(), usual, sent_to))
+    assert sorted(set(places_of(join(plans, default_book()).plan))) == sorted(set(places))
+    if len(forms) == 2:
+        assert places_of(join(plans, default_book()).plan) == places
+
+
+@pytest.mark.parametrize("noun", ["drinks", "drink", "Drink"])
+def test_any_of_a_category_is_looked_for_where_its_things_usually_are(noun):
+    form = read_form(f'(bring (λ$1:e (is_a $1 "{noun}")))')
+    plan = apply_recipes(make_plan(form, HOME), default_book(), drinks_on_the_shelf())
+    assert places_of(plan) == ["shelf", "operator"]
+
+
+def drinks_on_the_shelf():
     entities = [
         replace(each, attributes={"defaultLocation": "shelf"}) if each.text == "drinks" else each
         for each in HOME.entities
     ]
-    usual = usual_places(replace(HOME, entities=tuple(entities)))
-    assert list(usual) == ["drinks"]
-    plan = apply_recipes(make_plan(read_form(form), HOME), default_book(), usual)
-    assert [call[6:-1] for call in calls(plan) if call.startswith("go_to")] == places
+    return usual_places(replace(HOME, entities=tuple(entities)))
+
+
+def places_of(plan):
+    return [call[6:-1] for call in calls(plan) if call.startswith("go_to")]
 
 
 @given(commands())

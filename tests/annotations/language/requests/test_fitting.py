@@ -84,6 +84,26 @@ def test_words_between_decide_who_is_where(said, right, wrong):
     assert best_fitting([(-0.1, bad), (-2.0, world.fit(said, *right))]) == [1, 0]
 
 
+PUT = f'( sequence ( take {of(THING)} ) ( put it " <location> " ) )'
+BRING = f"( bring {of(THING, AT)} )"
+MOVED_PLACES = [
+    ("put the bar counter on the cocoa", PUT, True),
+    ("take the bar counter and put it on the cocoa", PUT, True),
+    ("give me the bar counter that is on the cocoa", BRING, True),
+    ("put the cocoa on the bar counter", PUT, False),
+    ("on the bar counter put the cocoa", PUT, False),
+    ("get the cocoa and place it on the bar counter", PUT, False),
+    ("from the bar counter bring me the cocoa", BRING, False),
+    ("the bar counter has a cocoa, bring it", BRING, False),
+]
+
+
+@pytest.mark.parametrize(("said", "form", "is_moved"), MOVED_PLACES)
+def test_a_place_named_where_a_thing_stands_makes_an_impossible_form(said, form, is_moved):
+    exchanged = shipped("competition").fit(said, form, ["cocoa", "bar counter"]).exchanged
+    assert [each.is_possible for each in exchanged] == [False] * is_moved
+
+
 HONEY = [
     (
         "find the honey",

@@ -1,10 +1,14 @@
 """What makes another request of a command, and what stopped an utterance."""
 
+from pathlib import Path
+from time import process_time
+
 import pytest
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.requests import NearCommands, StoppingWords, objections
+from annotations.language.requests.stating import states
 from tests.annotations.language.requests.wordings import (
     FINE,
     FINE_TOO,
@@ -39,6 +43,32 @@ def test_another_request_is_named(code, said):
 @pytest.mark.parametrize("said", FINE)
 def test_courtesy_is_no_objection(said):
     assert not codes(said)
+
+
+def lines(name):
+    text = (Path(__file__).parent / name).read_text(encoding="utf-8")
+    return [line for line in text.splitlines() if not line.startswith("#")]
+
+
+@pytest.mark.parametrize("said", lines("no_requests.txt"))
+def test_what_only_tells_something_is_no_request(said):
+    for text in (said, said.upper(), f"  {said} ...", said.replace("'", "’")):
+        assert "statement" in codes(text), text
+
+
+@pytest.mark.parametrize("said", lines("stated_requests.txt"))
+def test_what_is_wanted_or_due_is_a_request_however_it_is_said(said):
+    for text in (said, said.upper(), f"{said}!"):
+        assert "statement" not in codes(text), text
+
+
+@pytest.mark.parametrize(
+    "word", ["now ", "i ", "the a ", "was ", "and ", ", ", "_ ", "i think ", "really "]
+)
+def test_a_long_text_is_looked_at_in_linear_time(word):
+    began = process_time()
+    states(word * (20_000 // len(word)))
+    assert process_time() - began < 1
 
 
 def test_other_wordings_seldom_raise_a_false_alarm_and_seldom_pass():

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import unicodedata
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
+from random import Random
 
 import pytest
 
 from annotations.language.decoding import read_folder
-from annotations.language.grounding import HeardChange, HearingReader
+from annotations.language.grounding import HeardChange, HearingReader, applied
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import read_generator_files
 from annotations.language.text import normalise_line
 from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
+from benchmarks.parsing.noise import KINDS
 from parser_service.parsers.interface import Candidate, Knowledge
 from parser_service.parsers.oracle import GrammarOracle
 from tests.annotations.language.ontology_files import read_ontology_folder
@@ -118,6 +122,88 @@ def test_places_hold_in_texts_whose_letters_fold_to_others(utterance):
     assert changes
     for change in changes:
         assert text[change.start : change.end] == change.said
+
+
+EVERY_KIND = (
+    "find Jade in the galley and follow Jade to the piano",
+    "take the cocoa from the fridge and give that object to me",
+    "go to the arm chair then find the papaya and bring the papaya to me",
+    "find the person waving in the galley and tell her the time",
+    "bring me an apple",
+    "bring me a weißbier from the garbage bin",
+)
+HOMOPHONES = {
+    "meet": "meat",
+    "to": "two",
+    "the": "thee",
+    "bring": "brink",
+    "apple": "appel",
+    "find": "fined",
+}
+OPENINGS = (
+    "hey buddy",
+    "please",
+    "Please, robot,",
+    "so uh",
+    "hey Rosie,",
+    "could you kindly",
+    "hello!",
+)
+CLOSINGS = ("please", ", thanks!", "for me, if you can", "would you?", "okay")
+WAYS_TO_WRITE = (
+    str.upper,
+    str.title,
+    lambda text: unicodedata.normalize("NFD", text.replace("e", "\u00e9", 1)),
+    lambda text: text.replace("fi", "\ufb01").replace("ss", "\u00df"),
+    lambda text: text.replace("i", "\u0130", 1),
+    lambda text: "".join(chr(ord(each) + 0xFEE0) if each.isalpha() else each for each in text),
+    lambda text: text.replace(" ", "  ") + " ...",
+)
+
+
+def noisy(command: str, random: Random) -> str:
+    """A command with up to three kinds of noise, words cut or joined at random, courtesy, and odd letters."""
+    words = [
+        HOMOPHONES.get(each, each) if random.random() < 0.1 else each for each in command.split()
+    ]
+    kinds = [each for each in KINDS if each != "homophone"]  # takes seconds to make
+    for kind in random.sample([*kinds, "joined anywhere", "split anywhere"], random.randrange(4)):
+        if kind == "joined anywhere":
+            at = random.randrange(len(words))
+            words = [*words[:at], "".join(words[at : at + 2]), *words[at + 2 :]]
+        elif kind == "split anywhere":
+            at = max(range(len(words)), key=lambda each: (len(words[each]), random.random()))
+            cut = random.randrange(1, len(words[at]))
+            words = [*words[:at], words[at][:cut], words[at][cut:], *words[at + 1 :]]
+        else:
+            words = KINDS[kind](words, random)
+    if random.random() < 0.4:
+        words = [random.choice(OPENINGS), *words]
+    if random.random() < 0.3:
+        words = [*words, random.choice(CLOSINGS)]
+    text = " ".join(words)
+    return random.choice(WAYS_TO_WRITE)(text) if random.random() < 0.3 else text
+
+
+def test_what_was_heard_is_what_was_said_with_the_changes_made():
+    random, understood, changed = Random(0), 0, set()
+    commands = [*EVERY_KIND, *(line.split(" | ")[1] for line in lines("noisy_commands.txt"))]
+    for command in commands * 2:
+        utterance = normalise_line(noisy(command, random))
+        for candidate in answers(utterance):
+            text = applied(utterance, candidate.heard)
+            same = [each for each in answers(text) if said([each]) == said([candidate])]
+            assert [each.heard for each in same] == [()], (utterance, text)
+            for change in candidate.heard:
+                assert utterance[change.start : change.end] == change.said != change.heard
+            for before, after in pairwise(candidate.heard):
+                assert before.end <= after.start
+            changed |= {change.kind for change in candidate.heard}
+            understood += 1
+        cleaned = reader().clean(utterance)
+        assert applied(utterance, cleaned.changes) == cleaned.text or not cleaned.changes
+    assert understood > 80
+    assert changed > {"joined", "split", "courtesy", "article", "reference", "repeated", "filler"}
 
 
 def test_a_command_that_is_understood_is_not_changed():
