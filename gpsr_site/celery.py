@@ -19,9 +19,11 @@ app.conf.update(
     worker_enable_remote_control=False,
     worker_hijack_root_logger=False,
     worker_consumer="gpsr_site.consumer:PatientConsumer",
+    worker_lost_wait=1.0,  # until a child that ended is known to be lost; a result of it is ignored anyway
     broker_connection_retry=True,
     broker_connection_retry_on_startup=True,
     broker_connection_max_retries=None,  # for ever: a worker never ends because the broker is away
 )
+app.Task.Request = "gpsr_site.consumer:WakeUp"
 app.autodiscover_tasks(["parser_service"], related_name="worker")
 app.steps["worker"].add("parser_service.runs.worker:WorkerTimer")

@@ -16,7 +16,7 @@ from annotations.web.people.invitation_pages import join
 from annotations.web.worlds.world_pages import world_import, world_new
 from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
 from gpsr_site.pages.document_pages import document, document_image, documents
-from gpsr_site.pages.home_pages import banner, healthz, home, world
+from gpsr_site.pages.home_pages import banner, favicon, healthz, home, world
 from gpsr_site.pages.search import search
 from parser_service.rest_urls import urlpatterns as parser_routes
 
@@ -47,6 +47,7 @@ urlpatterns = [
     path("p/<str:key>/<int:position>/", public_pages.campaign_place, name="campaign_place"),
     path("p/<str:key>/<int:position>/check/", public_pages.campaign_check, name="campaign_check"),
     path("banner/", banner, name="banner"),
+    path("favicon.ico", favicon, name="favicon"),
     path("healthz", healthz, name="healthz"),
     path("docs/", documents, name="documents"),
     path("docs/images/<str:name>", document_image, name="document_image"),

@@ -19,10 +19,12 @@ from django.db.models.signals import post_migrate
 from django.test import Client, override_settings
 from hypothesis import HealthCheck
 
+from annotations.background import leasing
 from annotations.models import ApiToken, Membership, Scope, User, World
 from annotations.models.worlds import Role
 from tests.replaying import made_once
 from tests.sample_world import SampleWorld, fill_world
+from tests.waiting import PATIENCE_SECONDS
 from tests.write_transactions import measured_transactions
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -93,6 +95,17 @@ def no_earlier_attempts(request):
     if "transactional_db" in request.fixturenames:
         request.getfixturevalue("transactional_db")
         cache.clear()
+
+
+@pytest.fixture(autouse=True)
+def leases_look_at_what_is_committed(request, monkeypatch):
+    """The thread of a lease has its own connection, to which work inside a test's transaction looks lost."""
+    mark = request.node.get_closest_marker("django_db")
+    is_committed = "transactional_db" in request.fixturenames or (
+        mark and mark.kwargs.get("transaction")
+    )
+    if not is_committed:
+        monkeypatch.setattr(leasing, "LISTEN_EVERY", PATIENCE_SECONDS)
 
 
 @pytest.fixture(autouse=True)

@@ -15,3 +15,17 @@ def _seconds(work: Callable[[], object]) -> float:
     began = time.process_time()
     work()
     return time.process_time() - began
+
+
+ROUNDS, IDLE_SECONDS = 200_000, 0.004  # a loop of so many rounds, on an idle core
+
+
+def idle_seconds(seconds: float) -> float:
+    """Return what ``seconds`` of processor time just now would be on an idle core, by a loop of known work. Beside
+    other work a core is shared and its caches are, and the same work takes two or three times as long."""
+    return seconds * min(1.0, IDLE_SECONDS / least_seconds(_reference, times=3))
+
+
+def _reference() -> None:
+    for _ in range(ROUNDS):
+        pass

@@ -12,7 +12,7 @@ PATIENCE_SECONDS = 120
 LOOK_EVERY = 0.02
 
 
-def wait_for(condition: Callable[[], bool], what: str) -> None:
+def wait_for(condition: Callable[[], object], what: str) -> None:
     """Return as soon as ``condition`` holds. Fails the test, saying ``what``, if it never does."""
     began = time.monotonic()
     while not condition():

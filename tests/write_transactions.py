@@ -17,12 +17,14 @@ from unittest.mock import patch
 
 from django.db.transaction import Atomic, get_connection
 
+from tests.timing import idle_seconds
+
 ROOT = Path(__file__).resolve().parent.parent
 OURS = tuple(str(ROOT / name) for name in ("annotations", "parser_service", "gpsr_site"))
 OURS_AND_TESTS = (*OURS, str(ROOT / "tests"))
 
-# Seconds of processor time. Waiting for other processes does not count, so that a busy machine changes little,
-# nor does collecting garbage: the heap of a whole test run takes long, and any statement can be the one to start it.
+# Seconds of processor time, as on an idle core. Waiting for other processes does not count, nor does
+# collecting garbage: the heap of a whole test run takes long, and any statement can be the one to start it.
 LONGEST_IN_JOBS = 0.2
 LONGEST = 1.0  # in requests and commands
 
@@ -79,7 +81,7 @@ def measured_transactions(longer_than: float = LONGEST_IN_JOBS) -> Iterator[list
         if mine and mine[-1][0] is atomic:
             seconds = own_time() - mine.pop()[1]
             if seconds > longer_than:
-                lasted.extend(_describe(sys._getframe(1), seconds))
+                lasted.extend(_describe(sys._getframe(1), idle_seconds(seconds)))
 
     gc.callbacks.append(count_collecting)
     try:

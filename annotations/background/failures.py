@@ -6,6 +6,7 @@ import errno
 import re
 import sqlite3
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from django.db import DatabaseError
 
@@ -13,6 +14,8 @@ from annotations.language.errors import Refusal
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
 POSTGRES_FULL, SQLITE_FULL = "53100", sqlite3.SQLITE_FULL
+# A disk that became read-only after an error, or a server that only replicates another.
+POSTGRES_READ_ONLY, SQLITE_READ_ONLY = "25006", sqlite3.SQLITE_READONLY
 # What libraries say that pass no errno on: safetensors, and the system itself.
 SAYS_FULL = re.compile(
     r"no space left on device|os error 28\b|disk is full|disk quota exceeded", re.IGNORECASE
@@ -28,6 +31,10 @@ FREE_SPACE = (
     "Free space on the disk of GPSR_VAR_DIR (its folder vectors/ is a cache and may be emptied), or on that "
     "of PostgreSQL"
 )
+MAKE_WRITABLE = (
+    "Look why (a system makes a disk read-only after an error; the account of this site may lack the right), and "
+    "make the disk of GPSR_VAR_DIR, or that of PostgreSQL, writable"
+)
 DAMAGED = (
     "The database is damaged: a part of it cannot be read, and what stood there may be lost. Stop the site and "
     "its workers, keep a copy of the database as it is, and bring back the last backup with “manage.py "
@@ -37,8 +44,8 @@ DAMAGED = (
 
 def failure_sentence(error: Exception, noun: str = "job") -> str:
     """Say what stopped the work and what to do about it. A Refusal says both itself."""
-    if is_disk_full(error):
-        return f"The disk is full. {FREE_SPACE}, then start the {noun} again."
+    if trouble := disk_trouble(error):
+        return f"{trouble.name}. {trouble.remedy}, then start the {noun} again."
     if is_damaged(error):
         return DAMAGED
     if isinstance(error, Refusal):
@@ -53,18 +60,16 @@ def failure_sentence(error: Exception, noun: str = "job") -> str:
 
 def file_sentence(error: OSError) -> str:
     """Say why a command could not use a file or the network, and what to do about it."""
-    if is_disk_full(error):
-        return f"The disk is full ({error.strerror}). {FREE_SPACE}, then run this again."
+    if trouble := disk_trouble(error):
+        return f"{trouble.name} ({error.strerror}). {trouble.remedy}, then run this again."
     what = f"{error.filename} cannot be used" if error.filename else "The system refused this"
     return f"{what}: {error.strerror or type(error).__name__}. Put this right, then run it again."
 
 
 def database_sentence(error: DatabaseError) -> str:
     """Say why a command could not use the database, and what to do about it."""
-    if is_disk_full(error):
-        return (
-            f"The disk is full, and the command was not finished. {FREE_SPACE}, then run it again."
-        )
+    if trouble := disk_trouble(error):
+        return f"{trouble.name}, and the command was not finished. {trouble.remedy}, then run it again."
     if is_damaged(error):
         return DAMAGED
     cause = error.__cause__
@@ -77,6 +82,31 @@ def is_damaged(error: BaseException) -> bool:
     """Tell whether the database has found a part of itself that cannot be read."""
     damaged = {*POSTGRES_DAMAGED, *SQLITE_DAMAGED}
     return any(_code_of(each) in damaged for each in _with_causes(error))
+
+
+@dataclass(frozen=True, slots=True)
+class DiskTrouble:
+    """What keeps a disk from being written; ``remedy`` begins a sentence that says what to do about it."""
+
+    state: str
+    remedy: str
+
+    @property
+    def name(self) -> str:
+        return f"The disk is {self.state}"
+
+
+DISK_FULL = DiskTrouble("full", FREE_SPACE)
+DISK_READ_ONLY = DiskTrouble("read-only", MAKE_WRITABLE)
+
+
+def disk_trouble(error: BaseException) -> DiskTrouble | None:
+    """Return what keeps the disk from being written, where that is what the error means."""
+    if is_disk_full(error):
+        return DISK_FULL
+    errors = list(_with_causes(error))
+    codes = {getattr(each, "errno", None) for each in errors} | set(map(_code_of, errors))
+    return DISK_READ_ONLY if codes & {errno.EROFS, POSTGRES_READ_ONLY, SQLITE_READ_ONLY} else None
 
 
 def is_disk_full(error: BaseException) -> bool:

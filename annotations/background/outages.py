@@ -16,7 +16,7 @@ from typing import ParamSpec, TypeVar
 from django.conf import settings
 from django.db import InterfaceError, OperationalError, connection
 
-from annotations.background.failures import is_disk_full
+from annotations.background.failures import disk_trouble
 from annotations.models.background import LEASE
 
 logger = logging.getLogger(__name__)
@@ -49,9 +49,9 @@ def is_outage(error: BaseException) -> bool:
     cause = error.__cause__
     if isinstance(cause, sqlite3.Error):
         code = getattr(cause, "sqlite_errorcode", None)
-        return code is None or code & 0xFF in SQLITE_CODES or is_disk_full(error)
+        return code is None or code & 0xFF in SQLITE_CODES or disk_trouble(error) is not None
     state = getattr(cause, "sqlstate", None)
-    return state is None or state.startswith(SQLSTATES) or is_disk_full(error)
+    return state is None or state.startswith(SQLSTATES) or disk_trouble(error) is not None
 
 
 def outlasting(write: Callable[P, R]) -> Callable[P, R]:
@@ -98,8 +98,8 @@ def attempts(patience: float) -> Iterator[float]:
 def outage_sentence(error: BaseException, seconds: float) -> str:
     """Say what kept the database from being written, and for how long."""
     span = f"{seconds:.0f} s" if seconds >= 1 else "a moment"
-    if is_disk_full(error):
-        return f"The database's disk was full for {span}"
+    if trouble := disk_trouble(error):
+        return f"The database's disk was {trouble.state} for {span}"
     if "locked" in str(error):
         return f"The database was locked by another writer for {span}"
     return f"The database was away for {span}"

@@ -9,10 +9,9 @@ from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.complexity import Complexity, complexity
 from annotations.generation.generated_world import GeneratedWorld, counters_of
-from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, make_commands
-from annotations.jobs.requesting import request_job
+from annotations.generation.language_size import is_large, make_commands
+from annotations.jobs.requesting import request_job_once
 from annotations.jobs.watching import JobProgress
-from annotations.jobs.weight import MOST_COMMANDS
 from annotations.language.errors import LanguageError
 from annotations.language.templates import (
     DEFAULT_LIMIT,
@@ -20,9 +19,8 @@ from annotations.language.templates import (
     Generated,
     SampleNote,
     SampleRequest,
-    generation_size,
 )
-from annotations.rows.from_rows import AnnotatedCategory, annotated_categories, task_categories
+from annotations.rows.from_rows import AnnotatedCategory, annotated_categories
 from annotations.rows.synchronise import Changes
 
 MOST_ATTEMPTS = 3
@@ -89,12 +87,15 @@ class GenerationReport:
 def start_generation(
     world: models.World, by: models.User, request: SampleRequest | None = None
 ) -> models.Job | GenerationReport:
-    """Generate now, or queue a job; what was asked for the last time, without a ``request``.
+    """Generate now, or return a job: one that is about to do the same already, or a new one. What was asked for the
+    last time, without a ``request``.
 
     Raises LanguageError where the templates cannot be expanded.
     """
-    if is_heavy_generation(world, request):
-        return request_job(models.JobKind.GENERATE, world.name, by, _arguments(request))
+    if is_large(world):
+        kind, arguments = models.JobKind.GENERATE, _arguments(request)
+        active = world.jobs.active().filter(kind=kind, arguments=arguments)
+        return request_job_once(active, kind, world, by, arguments)[0]
     return generate_pairs(world, request=request)
 
 
@@ -106,17 +107,6 @@ def _arguments(request: SampleRequest | None) -> dict[str, Any]:
         "seed": request.seed,
         "balanced": str(request.balance),
     }
-
-
-def is_heavy_generation(world: models.World, request: SampleRequest | None = None) -> bool:
-    """Return whether many commands are asked for, or the templates of ``world`` make many."""
-    size = (request or world.sample_request).size
-    if size:
-        return size > MOST_SAMPLED_AT_ONCE
-    try:
-        return generation_size(task_categories(world)) > MOST_COMMANDS
-    except LanguageError:
-        return False
 
 
 def generate_pairs_of(job: models.Job, progress: JobProgress) -> dict[str, Any]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 
 from annotations import models
+from annotations.jobs.weight import MOST_COMMANDS
+from annotations.language.errors import LanguageError
 from annotations.language.templates import (
     BoundedCache,
     Generated,
@@ -15,9 +17,6 @@ from annotations.language.templates import (
     generate,
 )
 from annotations.rows.from_rows import task_categories
-
-# A sample of so many commands is drawn while somebody waits: about a second on one core.
-MOST_SAMPLED_AT_ONCE = 1_000
 
 # The content of task categories → the number of derivations.
 _SIZES: BoundedCache[Hashable, int] = BoundedCache(100)
@@ -39,6 +38,15 @@ def language_size(world: models.World) -> int:
         for each in categories
     )
     return _SIZES.get(content, lambda: Language(categories).size)
+
+
+def is_large(world: models.World) -> bool:
+    """Return whether the templates of ``world`` make too many commands for a request. A sample of them costs as much as
+    all of few: what is drawn from is counted first, and what is drawn is compared with what is stored."""
+    try:
+        return language_size(world) > MOST_COMMANDS
+    except LanguageError:
+        return False
 
 
 def make_commands(

@@ -12,7 +12,7 @@ from django.db import connection
 from annotations import models
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.kept_expansions import generate_at_once
-from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, make_commands
+from annotations.generation.language_size import is_large, make_commands
 from annotations.jobs.requesting import request_job
 from annotations.language.errors import LanguageError
 from annotations.rows.from_rows import annotated_categories
@@ -48,7 +48,7 @@ def bring_up_to_date(world: models.World) -> UpdateOutcome:
         categories = annotated_categories(locked)
         values = [category.value for category in categories]
         request, sample = locked.sample_request, None
-        if request.size > MOST_SAMPLED_AT_ONCE:
+        if request.size and is_large(locked):
             return UpdateOutcome(False, trouble=f"a sample of {request.size:,} commands is drawn")
         if request.size:
             generated, sample = make_commands(values, request, None)

@@ -91,7 +91,7 @@ def workers_now() -> Workers:
             counts[status, queue] += count
             nouns.add(kind.model.noun)
     return Workers(
-        served=set(Worker.objects.alive().by_queue()),
+        served=set(Worker.objects.alive_by_queue()),
         running=sum(count for (status, _), count in counts.items() if status == Status.RUNNING),
         waiting={queue: n for (status, queue), n in counts.items() if status == Status.QUEUED},
         noun=nouns.pop() if len(nouns) == 1 else "job",

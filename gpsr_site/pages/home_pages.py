@@ -5,7 +5,8 @@ from __future__ import annotations
 from django.contrib.auth.decorators import login_not_required
 from django.db import connection
 from django.http import HttpRequest, HttpResponse, JsonResponse
-from django.shortcuts import render
+from django.shortcuts import redirect, render
+from django.templatetags.static import static
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_safe
 
@@ -73,6 +74,13 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
 def banner(request: HttpRequest) -> HttpResponse:
     """Show the worker's state, which every page asks for every two seconds."""
     return render(request, "gpsr_site/_banner.html")
+
+
+@login_not_required
+@require_safe
+def favicon(request: HttpRequest) -> HttpResponse:
+    """Lead to the icon of the site, for which browsers ask here where a page names none, such as a file or JSON."""
+    return redirect(static("dist/favicon.svg"))
 
 
 @never_cache

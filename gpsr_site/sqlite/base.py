@@ -7,6 +7,8 @@ written, in bulk too, with an IntegrityError that names the constraint.
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 from django.db.backends.sqlite3 import base, operations
@@ -46,7 +48,7 @@ class DatabaseOperations(operations.DatabaseOperations):
 
 
 class DatabaseWrapper(base.DatabaseWrapper):
-    """A connection whose tables are made with these constraints."""
+    """A connection whose tables are made with these constraints, and which reads from a read-only disk."""
 
     ops_class = DatabaseOperations
 
@@ -60,3 +62,15 @@ class DatabaseWrapper(base.DatabaseWrapper):
         "IntegerField": _between(-(2**31), 2**31 - 1),
         "PositiveIntegerField": _between(0, 2**31 - 1),
     }
+
+    def get_new_connection(self, conn_params: dict[str, Any]) -> Any:
+        """Open the database. On a disk that cannot be written it is opened for reading, where no log lies
+        beside it: with one, SQLite reads both by itself. Raises OperationalError."""
+        try:
+            return super().get_new_connection(conn_params)
+        except base.Database.OperationalError:
+            path = Path(conn_params["database"])
+            if os.access(path.parent, os.W_OK) or Path(f"{path}-wal").exists():
+                raise
+            address = f"{path.resolve().as_uri()}?immutable=1"
+            return super().get_new_connection({**conn_params, "database": address, "uri": True})

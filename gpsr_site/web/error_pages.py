@@ -10,7 +10,7 @@ from django.db import InterfaceError, OperationalError
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 
-from annotations.background.failures import DAMAGED, FREE_SPACE, is_damaged, is_disk_full
+from annotations.background.failures import DAMAGED, disk_trouble, is_damaged
 from annotations.models import World
 from annotations.people.access import WorldRequest
 from annotations.people.members import admins_of
@@ -68,17 +68,17 @@ def not_found(request: HttpRequest, exception: Exception) -> HttpResponse:
 
 
 def server_error(request: HttpRequest) -> HttpResponse:
-    """Answer 507 where the disk is full, 503 where the database is away or busy, 409 where somebody has stored
-    the same at the same moment, 500 for whatever else no view has handled."""
+    """Answer 507 where the disk cannot be written, 503 where the database is away or busy, 409 where somebody
+    has stored the same at the same moment, 500 for whatever else no view has handled."""
     error = sys.exc_info()[1]
-    if error is not None and is_disk_full(error):
+    if error is not None and (trouble := disk_trouble(error)):
         return refuse(
             request,
             507,
-            "The disk of this site is full",
+            trouble.name,
             "Your last step was not saved. What was saved before is still there, and pages can be read. Tell "
-            f"whoever runs this site. {FREE_SPACE}, then send it again.",
-            "disk_full",
+            f"whoever runs this site. {trouble.remedy}, then send it again.",
+            "disk_not_writable",
         )
     if error is not None and is_damaged(error):
         return refuse(request, 500, "The database is damaged", DAMAGED, "database_damaged")

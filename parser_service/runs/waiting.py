@@ -57,7 +57,7 @@ def waiting_of(run: TrainingRun) -> ExpectedWait:
         if kind.model is not TrainingRun
     }
     runs = TrainingRun.objects.active().filter(before, queue=run.queue)
-    workers = Worker.objects.alive().by_queue()[run.queue]
+    workers = Worker.objects.alive_by_queue()[run.queue]
     left = [_seconds_left(each) for each in runs]
     known = [seconds for seconds in left if seconds is not None]
     is_known = not any(ahead.values()) and len(known) == len(left)

@@ -58,7 +58,7 @@ def _leave(work: BackgroundWork) -> None:
         with suppress(background.Fenced):
             background.acknowledge_cancel(work)
     finally:
-        os._exit(1)
+        os._exit(os.EX_OK)  # the pool logs any other as a fault
 
 
 @worker_process_init.connect

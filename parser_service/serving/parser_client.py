@@ -18,12 +18,16 @@ from django.conf import settings
 
 from annotations.language.errors import Refusal
 
-# Connecting, then a look whether it still lives: together below the 2 s in which a page says that it is away.
 CONNECT_SECONDS = 0.8
+# A server that has ended closes its connections. One that answers nothing is looked at again and again: it may be
+# busy, with requests or with a parser that it loads, and is away once it has been silent for so long.
 LOOK_AFTER = 0.6
 ALIVE_SECONDS = 0.5
+SILENT_SECONDS = 8.0
 PATIENCE = 30.0
+CONTINUES = b"HTTP/1.1 100"
 AWAY = "The parse server is away. Nothing is lost; it answers again when it is back."
+BUSY = f"The parse server is busy: it has not answered within {PATIENCE:g} s. Ask again."
 
 
 class ParserAway(Refusal):
@@ -48,7 +52,8 @@ class ParserRefused(Refusal):
 
 @dataclass(frozen=True)
 class ParserClient:
-    """Asks the parse server at ``url``. Everything raises ``ParserAway`` within 2 s where it is away."""
+    """Asks the parse server at ``url``. Everything raises ``ParserAway`` where it is away: at once where nobody
+    listens or it ends, within ``SILENT_SECONDS`` where it has stopped without an end."""
 
     url: str
     secret: str = field(repr=False)
@@ -110,11 +115,18 @@ class ParserClient:
             return listed
 
     def is_alive(self) -> bool:
-        """Return whether the server answers at all, within ``ALIVE_SECONDS``."""
+        """Return whether the server answers at all, within ``ALIVE_SECONDS``.
+
+        It is asked to go on, as before a large body (RFC 9110, 10.1.1): its listening thread says so, whatever the
+        threads that carry requests out are busy with.
+        """
         try:
             with closing(self._connect(ALIVE_SECONDS)) as connection:
-                connection.request("GET", "/healthz")
-                return connection.getresponse().status == 200
+                connection.putrequest("POST", "/healthz")
+                connection.putheader("Content-Length", "1")
+                connection.putheader("Expect", "100-continue")
+                connection.endheaders()
+                return connection.sock.recv(len(CONTINUES)).startswith(CONTINUES)
         except (ParserAway, OSError, HTTPException):
             return False
 
@@ -162,12 +174,16 @@ class ParserClient:
 
     def _wait_for_answer(self, connection: HTTPConnection) -> None:
         """Wait until something can be read. Raises ParserAway where the server has stopped answering."""
-        deadline = time.monotonic() + PATIENCE
+        began = heard = time.monotonic()
         answer = select.poll()  # select() takes no file descriptor above 1023
         answer.register(connection.sock, select.POLLIN)
         while not answer.poll(LOOK_AFTER * 1000):
-            if time.monotonic() > deadline or not self.is_alive():
+            if self.is_alive():
+                heard = time.monotonic()
+            if time.monotonic() - heard > SILENT_SECONDS:
                 raise ParserAway
+            if time.monotonic() - began > PATIENCE:
+                raise ParserAway(BUSY)
 
 
 def client() -> ParserClient:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import islice
 from random import Random
 from typing import Self
@@ -43,11 +43,17 @@ REMEMBERED_WORLDS = 8
 
 @dataclass(frozen=True)
 class LearnedUse:
-    """What some derivations of a grammar tell, each thing found out when it is first asked for."""
+    """What some derivations of a grammar tell, each thing found out when it is first asked for: to derive them
+    takes seconds, and a plan of forms needs none."""
 
-    derivations: tuple[tuple[Symbols, Form], ...]
+    derive: Callable[[], tuple[tuple[Symbols, Form], ...]] = tuple
     predicates: Mapping[str, Predicate] = field(default_factory=dict)
     classes: EntityClasses = DEFAULT_CLASSES
+
+    @cached_property
+    def derivations(self) -> tuple[tuple[Symbols, Form], ...]:
+        """Some commands with their forms."""
+        return self.derive()
 
     @cached_property
     def evidence(self) -> Evidence:
@@ -73,11 +79,15 @@ class WorldLanguage:
     predicates: Mapping[str, Predicate]
     anonymizer: Anonymizer
     lookup: Lookup
-    evidence: Evidence
     action_names: Mapping[str, ActionName]
     recipes: RecipeBook = field(default_factory=default_book)
     usual: UsualPlaces = field(default_factory=dict)  # where things are of which nobody says it
-    learned: LearnedUse = field(default_factory=lambda: LearnedUse(()))
+    learned: LearnedUse = field(default_factory=LearnedUse)
+
+    @property
+    def evidence(self) -> Evidence:
+        """Which mention fills which slot."""
+        return self.learned.evidence
 
     @property
     def use(self) -> WordUse:
@@ -93,18 +103,16 @@ class WorldLanguage:
     def of(cls, world: World) -> Self:
         """Read the language of ``world`` from the database."""
         ontology, predicates = ontology_of(world), predicates_of(world)
-        learned = learned_use(world)
         lookup = Lookup(ontology, predicates)
         return cls(
             ontology,
             predicates,
             Anonymizer(ontology),
             lookup,
-            learned.evidence,
             names_of(world),
             recipe_book_of(world),
             usual_places(ontology, lookup),
-            learned,
+            learned_use(world),
         )
 
 
@@ -157,11 +165,15 @@ def learned_use(world: World) -> LearnedUse:
 @lru_cache(maxsize=REMEMBERED_WORLDS)
 def _learn(pk: int, created_at: datetime, revision: int) -> LearnedUse:
     world = World.objects.get(pk=pk)
+    derive = partial(_derive, world)
+    return LearnedUse(derive, predicates_of(world), ontology_of(world).classes)
+
+
+def _derive(world: World) -> tuple[tuple[Symbols, Form], ...]:
     try:
-        pairs = tuple(islice(_derivations(world), MOST_COMMANDS))
+        return tuple(islice(_derivations(world), MOST_COMMANDS))
     except LanguageError:  # a grammar that cannot be read says nothing; its page says why
-        pairs = ()
-    return LearnedUse(pairs, predicates_of(world), ontology_of(world).classes)
+        return ()
 
 
 def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:

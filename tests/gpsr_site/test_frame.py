@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import socket
+import subprocess
 from datetime import timedelta
 
 import pytest
@@ -15,11 +18,22 @@ from parser_service.models import Promotion, Worker
 from parser_service.runs.requests import run_requests
 
 
-def worker(seconds_ago: float) -> Worker:
+def worker(seconds_ago: float, host: str = "", process: int = 0) -> Worker:
+    """A worker of this machine whose process has ended, unless it is said otherwise."""
     seen = timezone.now() - timedelta(seconds=seconds_ago)
     return Worker.objects.create(
-        name="w1@host", host="host", process_id=1, queue="cpu,quick", last_seen=seen
+        name="w1@host",
+        host=host or socket.gethostname(),
+        process_id=process or ended_process(),
+        queue="cpu,quick",
+        last_seen=seen,
     )
+
+
+def ended_process() -> int:
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    return ended.pid
 
 
 def test_without_a_worker_every_page_says_so(sample, annotator, client):
@@ -43,6 +57,20 @@ def test_a_worker_that_fell_silent_is_missed_within_ten_seconds(sample, annotato
     seconds = float(re.search(r'/banner/" hx-trigger="every (\d+)s"', page)[1])
     worker(seconds_ago=9.9 - seconds)
     assert not workers_now().is_alive
+
+
+def test_a_worker_that_is_late_lives_while_its_process_does(db):
+    row = worker(seconds_ago=60, process=os.getpid())
+    assert workers_now().is_alive
+    row.last_seen -= timedelta(minutes=2)
+    row.save()
+    assert not workers_now().is_alive
+
+
+@pytest.mark.parametrize(("seconds", "is_alive"), [(12, True), (25, False)])
+def test_a_worker_elsewhere_may_be_late_by_some_beats(seconds, is_alive, db):
+    worker(seconds_ago=seconds, host="elsewhere")
+    assert workers_now().is_alive is is_alive
 
 
 def test_the_banner_counts_the_runs_that_wait(sample, annotator, client):

@@ -16,6 +16,7 @@ from rest_framework.response import Response
 
 from annotations.jobs import answer_job, cancel_job
 from annotations.jobs.files import result_of
+from annotations.language.errors import Refusal
 from annotations.models import Duty, Job, World
 from annotations.people.allowances import may_take_long
 from annotations.web.rest.negotiation import AnyType
@@ -97,11 +98,17 @@ class JobViewSet(Cancelling, RowsViewSet):
     def result(self, request: ApiRequest, **kwargs: object) -> FileResponse:
         """Downloads the file that a job has made. It is kept for seven days."""
         job = self.get_object()
+        if not job.is_ended:
+            raise Refusal(
+                f"Job {job.pk} is {job.status}: its file is there once its status is succeeded. Ask again then.",
+                "job_not_ended",
+                HTTPStatus.CONFLICT,
+            )
         try:
             file = result_of(job).open("rb")
         except FileNotFoundError as error:
             raise NotFound(
-                "This job has made no file, or has made it more than a week ago."
+                f"Job {job.pk} ({job.status}) has made no file, or has made it more than a week ago."
             ) from error
         name = f"{self.world.name}-job-{job.pk}.jsonl"
         return FileResponse(file, as_attachment=True, filename=name, content_type=JSON_LINES)

@@ -10,7 +10,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from tqdm import tqdm
 
-from annotations.background.failures import FREE_SPACE, is_disk_full
+from annotations.background.failures import disk_trouble, file_sentence
 from annotations.language.corpus import Criterion
 from annotations.language.errors import Refusal
 from annotations.management.base import find_world
@@ -72,9 +72,7 @@ class Command(BaseCommand):
             said = (
                 f"“{error.filename}” cannot be read or written: {error.strerror}. Check the path."
             )
-            raise CommandError(
-                f"The disk is full. {FREE_SPACE}." if is_disk_full(error) else said
-            ) from error
+            raise CommandError(file_sentence(error) if disk_trouble(error) else said) from error
         except KeyboardInterrupt:
             raise CommandError(
                 f"Stopped. {options['json']} keeps the cells that were finished; the same command "

@@ -10,7 +10,7 @@ from annotations.exporting.split_manifest import manifest_of
 from annotations.generation.coverage import coverage_of
 from annotations.generation.generating import generate_pairs, start_generation
 from annotations.generation.grounded_pairs import grounded_pairs
-from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE, language_size
+from annotations.generation.language_size import language_size
 from annotations.generation.uncovered import uncovered_of
 from annotations.generation.up_to_date import bring_up_to_date
 from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, Balance, SampleRequest
@@ -118,11 +118,15 @@ def test_a_change_draws_the_sample_anew(sampled):
     assert len(texts(world)) == 2
 
 
-def test_a_large_sample_waits_for_a_worker(sampled, annotator):
-    many = SampleRequest(MOST_SAMPLED_AT_ONCE + 1, 4, Balance.LINES)
-    job = start_generation(sampled, annotator, many)
-    assert isinstance(job, Job)
-    assert job.arguments == {"sample": many.size, "seed": 4, "balanced": "lines"}
+@pytest.mark.parametrize("request_", [None, SampleRequest(1, 4, Balance.LINES)])
+def test_commands_of_a_large_language_wait_for_one_job(request_, sampled, annotator, monkeypatch):
+    monkeypatch.setattr("annotations.generation.language_size.MOST_COMMANDS", 2)
+    first, second = (start_generation(sampled, annotator, request_) for _ in range(2))
+    assert isinstance(first, Job) and first == second
+    wanted = {"sample": 1, "seed": 4, "balanced": "lines"} if request_ else {}
+    assert first.arguments == wanted
+    other = start_generation(sampled, annotator, SampleRequest(1, 5, Balance.LINES))
+    assert isinstance(other, Job) and other != first
 
 
 def test_commands_outside_a_sample_are_not_said_to_have_no_form(sampled):

@@ -81,6 +81,10 @@ def test_another_form_is_written(audit_page):
     expect(page.locator(".editor-report")).to_contain_text("there is no predicate count")
     keys.press("Control+Enter")  # refused, and what was written stays
     expect(page.get_by_text("This is the label already.")).to_be_visible()
+    wait_for_swap(
+        page
+    )  # the panel came anew: before it has its editor, a plain field would be filled
+    expect(page.locator(".cm-editor")).to_have_count(1)
     editor.fill('(go "<room>")')
     keys.press("Control+Enter")
     expect_finding(page, SAID[1])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -21,15 +24,22 @@ SAID = ["find the tea now", "find the tea please"]
 def label_page(page_of, live_server, sample, annotator) -> Page:
     collect(sample.world, SAID, by=annotator)
     page = page_of(annotator)
-    page.goto(f"{live_server.url}/w/home/label/")
-    wait_for_two(page)
+    with holding_two(page):
+        page.goto(f"{live_server.url}/w/home/label/")
     return page
 
 
-def wait_for_two(page: Page) -> None:
-    """Wait until an utterance is shown and the next one has been fetched: the person holds both then."""
-    expect(page.locator("[data-label-page][data-ready]")).to_have_count(1)
-    page.wait_for_load_state("networkidle")
+@contextmanager
+def holding_two(page: Page) -> Iterator[None]:
+    """After what opens the page, wait until an utterance is asked about and the next one has been fetched."""
+    with page.expect_response("**/label/item/**"):
+        yield
+    wait_until_asked(page)
+
+
+def wait_until_asked(page: Page) -> None:
+    """Wait until the utterance on the page can be answered: somebody has had the time to read it."""
+    expect(page.locator("[data-item][data-asks]")).to_have_count(1)
 
 
 @pytest.fixture
@@ -39,8 +49,8 @@ def blind_page(sample, annotator, label_page) -> Page:
     sample.world.work_items.all().delete()
     set_share(sample.world, WorkKind.UNLABELLED, 100)
     collect(sample.world, [f"find the tea {number} times" for number in range(3)], by=annotator)
-    label_page.reload()
-    wait_for_two(label_page)
+    with holding_two(label_page):
+        label_page.reload()
     expect(label_page.locator("[data-item]")).to_contain_text("Two people label this one")
     return label_page
 
@@ -80,8 +90,8 @@ def test_presses_wait_for_the_next_utterance(blind_page):
     page.route("**/label/item/**", lambda route: waiting.append(route))
     page.keyboard.press("1")  # the next one is there, the one after that is on its way
     expect_utterance(page, SAID[1])
+    wait_until_asked(page)
     for key in "11ued":
-        page.wait_for_timeout(300)
         page.keyboard.press(key)
     assert answered(page) == SAID
     assert not page.locator("[data-label-panel-place] form").count()
@@ -195,13 +205,13 @@ def test_a_written_answer_that_arrives_late_leaves_what_was_taken_back_meanwhile
     expect(page.locator(".label-last")).to_contain_text(SAID[0])
     write_form(page, "(go 17)")
     page.route("**/answer/", lambda route: late.append(route))
-    page.keyboard.press("Control+Enter")
-    page.wait_for_timeout(300)
+    with page.expect_request("**/answer/"):
+        page.keyboard.press("Control+Enter")
     page.locator("form[data-take-back] button").first.click()
     expect_utterance(page, SAID[0])
-    late.pop().continue_()
+    with page.expect_response("**/answer/"):
+        late.pop().continue_()
     wait_for(Utterance.objects.labelled().filter(text=SAID[1]).exists, "the answer is stored")
-    page.wait_for_timeout(300)
     expect_utterance(page, SAID[0])
 
 

@@ -181,8 +181,8 @@ def test_what_is_typed_stays_while_the_server_is_away(link, page_without_login):
     text = SAID[prompt_of(page)]
     page.locator("#text").fill(text)
     page.context.set_offline(True)
-    page.locator("#text").press("Enter")
-    page.wait_for_timeout(300)
+    with page.expect_event("requestfailed"):
+        page.locator("#text").press("Enter")
     page.context.set_offline(False)
     page.goto(f"{link}1/")
     expect(page.locator("#text")).to_have_value(text)

@@ -31,7 +31,7 @@ pytestmark = [
 
 FOLDER = Path("competition-real/Incheon2026")
 ROOMS = {"laundry table": "laundry", "bed": "bedroom", "sofa": "living room", "sink": "kitchen"}
-COMMANDS = 1_200  # above MOST_SAMPLED_AT_ONCE, so that a worker draws them
+COMMANDS = 1_200
 # A whole world is imported, sampled and frozen by one worker.
 JOB_SECONDS = 240
 

@@ -189,7 +189,7 @@ IN_EDITOR = NoRoute("It completes what somebody types, of predicates, entities a
 
 # Pages that are looked at and not posted to.
 PAGE_VIEWS: dict[str, str | NoRoute] = {
-    **dict.fromkeys(("healthz", "banner", "admin:index"), HERE),
+    **dict.fromkeys(("favicon", "healthz", "banner", "admin:index"), HERE),
     **dict.fromkeys(("documents", "document", "document_image"), DOCUMENTS),
     "home": "get worlds",
     "my_drafts": UNSAVED,

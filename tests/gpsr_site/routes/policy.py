@@ -22,6 +22,7 @@ ADMINS = (LOG_IN, NOWHERE, NO, NO, YES)
 
 POLICY = [
     # Outside of any world
+    Rule("favicon", *[GONE_ON] * 5),
     Rule("healthz", YES, YES, YES, YES, YES),
     # The documents hold nothing of anybody
     *(Rule(name, *[YES] * 5) for name in ("documents", "document", "document_image")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from io import StringIO
 from pathlib import Path
@@ -11,19 +12,21 @@ from django.core.cache import cache
 from django.core.management import call_command
 from django.core.management.base import CommandError
 from django.db import DatabaseError, OperationalError, connection, connections
-from django.db.backends.sqlite3.base import DatabaseWrapper
 from django.test import RequestFactory
 
 import annotations
 from annotations.background.failures import (
     DAMAGED,
     FREE_SPACE,
+    MAKE_WRITABLE,
     database_sentence,
     failure_sentence,
     is_damaged,
     is_disk_full,
 )
 from annotations.models import Utterance, World
+from annotations.people.rate_limits import JOINING, STARTED_RUNS
+from gpsr_site.sqlite.base import DatabaseWrapper
 from gpsr_site.web.error_pages import is_outage, server_error
 
 STARTER = Path(annotations.__file__).parent / "starter" / "household"
@@ -100,6 +103,67 @@ def test_a_full_disk_refuses_what_is_saved_and_shows_what_is_read(full_database,
     assert cache.get_or_set("large", lambda: "x" * 100_000) == "x" * 100_000
     for path in ("/", "/healthz", "/w/full/", "/w/full/utterances/", "/account/"):
         assert admin_client.get(path).status_code == 200, path
+
+
+@pytest.fixture
+def read_only_database(transactional_db):
+    """Let the connection refuse to write."""
+    if connection.vendor != "sqlite":
+        pytest.skip("asks SQLite")
+
+    def close():
+        with connection.cursor() as cursor:
+            cursor.execute("PRAGMA query_only = 1")
+
+    yield close
+    with connection.cursor() as cursor:
+        cursor.execute("PRAGMA query_only = 0")
+
+
+@pytest.mark.django_db(transaction=True)
+@pytest.mark.parametrize("disk", ["full_database", "read_only_database"])
+def test_a_disk_that_cannot_be_written_is_no_limit_that_somebody_has_reached(
+    disk, request, client, django_user_model
+):
+    spoil = request.getfixturevalue(disk)
+    django_user_model.objects.create_user("carla", password="right-password-1")
+    client.raise_request_exception = False
+    spoil()
+    answers = [
+        client.post("/login/", {"username": "carla", "password": "right-password-1"}),
+        *(client.post("/join/none/", {}) for _ in range(2)),
+    ]
+    # A full database has place for a session now and then.
+    assert answers[0].status_code in ([507, 302] if disk == "full_database" else [507])
+    assert 429 not in [answer.status_code for answer in answers]
+    for rate in (JOINING, STARTED_RUNS):
+        with pytest.raises(OperationalError):
+            for number in range(1_000):  # a full database may still have place for some
+                assert rate.take(str(number)) is not None
+    if disk == "read_only_database":
+        assert MAKE_WRITABLE in html.unescape(answers[0].content.decode())
+
+
+def test_a_database_that_was_stopped_in_order_is_read_from_a_read_only_disk(
+    tmp_path, monkeypatch, django_db_blocker
+):
+    options = {"init_command": "PRAGMA journal_mode=WAL;", "transaction_mode": "IMMEDIATE"}
+    given = {**connections.settings["default"], "NAME": str(tmp_path / "db"), "OPTIONS": options}
+    with django_db_blocker.unblock():
+        writing = DatabaseWrapper(given)
+        with writing.cursor() as cursor:
+            cursor.execute("CREATE TABLE said (text TEXT)")
+        writing.close()
+        assert [path.name for path in tmp_path.iterdir()] == ["db"]
+        (tmp_path / "db-shm").mkdir()  # as on a read-only disk, none can be made
+        monkeypatch.setattr("gpsr_site.sqlite.base.os.access", lambda *_: False)
+        reading = DatabaseWrapper(given)
+        with reading.cursor() as cursor:
+            assert cursor.execute("SELECT * FROM said").fetchall() == []
+            with pytest.raises(DatabaseError) as caught:
+                cursor.execute("INSERT INTO said VALUES ('hello')")
+        reading.close()
+    assert MAKE_WRITABLE in failure_sentence(caught.value)
 
 
 def test_a_command_on_a_full_disk_says_what_to_free(full_database):

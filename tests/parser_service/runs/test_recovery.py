@@ -148,4 +148,4 @@ def test_a_run_that_loses_three_workers_is_lost_and_says_what_to_do(world, split
         worker.kill_child()
     wait_for_status(run, "lost")
     assert " 3 " in run.failure
-    assert Worker.objects.alive().exists()
+    assert Worker.objects.alive()

@@ -29,7 +29,7 @@ def has_loaded_torch(process: int) -> bool:
 @pytest.fixture
 def worker(start_worker):
     running = start_worker()
-    wait_for(Worker.objects.alive().exists, "the worker shows itself")
+    wait_for(Worker.objects.alive, "the worker shows itself")
     return running
 
 
@@ -62,7 +62,7 @@ def test_a_second_run_waits_for_the_first(world, split, worker):
 
 def test_a_short_run_passes_a_long_one_in_a_process_without_torch(world, split, start_worker):
     training, quick = start_worker("cpu", "gpu"), start_worker("quick")
-    wait_for(lambda: Worker.objects.alive().count() == 2, "two workers show themselves")
+    wait_for(lambda: len(Worker.objects.alive()) == 2, "two workers show themselves")
     long, _ = run_requests.request(world, split, "seq2seq", LONG)
     wait_for_epochs(long, 1)
     short, _ = run_requests.request(world, split, "knn")
@@ -137,7 +137,7 @@ def test_wake_ups_for_nothing_hold_nobody_up(world, split, worker):
 def test_of_two_workers_racing_for_one_run_one_wins(world, split, start_worker):
     start_worker()
     start_worker()
-    wait_for(lambda: Worker.objects.alive().count() == 2, "two workers show themselves")
+    wait_for(lambda: len(Worker.objects.alive()) == 2, "two workers show themselves")
     for seed in range(4):
         run, _ = run_requests.request(world, split, "knn", seed=seed)
         send_wake_up("quick")

@@ -27,7 +27,7 @@ def test_runs_end_or_stop_without_torch_and_the_key_is_in_no_log(
         monkeypatch.setenv("GPSR_LLM_KEY", KEY)
         monkeypatch.setenv("LOG_LEVEL", "DEBUG")
         worker = start_worker("cpu")
-        wait_for(Worker.objects.alive().exists, "the worker shows itself")
+        wait_for(Worker.objects.alive, "the worker shows itself")
 
         def ask(seed: int):
             return run_requests.request(world, split, "llm", {"model": MODEL}, seed=seed)[0]

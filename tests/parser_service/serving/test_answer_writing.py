@@ -19,7 +19,6 @@ from annotations.language.forms import (
     to_corpus,
 )
 from annotations.language.grounding import Anonymizer
-from annotations.language.grounding.role_evidence import default_evidence
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import ActionName, Lookup
 from annotations.language.predicates import Predicate, PredicateKind
@@ -67,9 +66,7 @@ def language_of(ontology: Ontology) -> WorldLanguage:
     } | {"fetch": Predicate("fetch", PredicateKind.ACTION, (), PATTERNS["fetch"])}
     lookup = Lookup(ontology, predicates)
     names = {"bring": ActionName("Fetch", {"thing": "what"})}
-    return WorldLanguage(
-        ontology, predicates, Anonymizer(ontology), lookup, default_evidence(), names
-    )
+    return WorldLanguage(ontology, predicates, Anonymizer(ontology), lookup, names)
 
 
 def compare(

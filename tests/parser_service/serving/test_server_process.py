@@ -10,18 +10,22 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from http.client import HTTPConnection
 from pathlib import Path
 
 import pytest
+from waitress.server import create_server
 
 from annotations.models import ApiToken
 from annotations.web.rest.streaming import BrokenOff
 from parser_service.promotions.promoting import promote
+from parser_service.serving import parser_client
 from parser_service.serving.parser_client import AWAY, ParserAway, ParserClient, client
 from tests.parser_service.served import make_home, trained_run
 from tests.parser_service.worker_process import database_url
-from tests.waiting import wait_for
+from tests.waiting import PATIENCE_SECONDS, wait_for
 
 ROOT = Path(__file__).resolve().parents[3]
 PARSE = "/api/v1/worlds/home/parse/"
@@ -80,6 +84,27 @@ def test_a_server_that_accepts_and_never_answers_is_away():
         asked = ParserClient(f"http://127.0.0.1:{mute.getsockname()[1]}", "secret")
         with pytest.raises(ParserAway):
             asked.parse("home", "bring me tea")
+
+
+def test_a_server_whose_threads_are_all_busy_is_waited_for(monkeypatch):
+    """Its listening thread answers that it is there, long before a thread is free."""
+    monkeypatch.setattr(parser_client, "SILENT_SECONDS", 0.1)
+    free = threading.Event()
+
+    def application(environ, start_response):
+        free.wait(PATIENCE_SECONDS)
+        start_response("200 OK", [("Content-Type", "application/json")])
+        return [b"[]"]
+
+    server = create_server(application, host="127.0.0.1", port=0, threads=1)
+    threading.Thread(target=server.run, daemon=True).start()
+    asked = ParserClient(f"http://127.0.0.1:{server.effective_port}", "secret")
+    timer = threading.Timer(2 * parser_client.LOOK_AFTER, free.set)
+    with ThreadPoolExecutor() as pool:
+        answers = [pool.submit(asked.parsers) for _ in range(3)]
+        timer.start()
+        assert [answer.result() for answer in answers] == [[], [], []]
+    server.close()
 
 
 @pytest.mark.processes

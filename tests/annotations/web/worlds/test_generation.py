@@ -6,7 +6,7 @@ from http import HTTPStatus
 
 import pytest
 
-from annotations.generation.language_size import MOST_SAMPLED_AT_ONCE
+from annotations.generation import language_size
 from annotations.models import Command, Job, JobKind, World
 from tests.conftest import client_of
 
@@ -57,10 +57,14 @@ def test_what_is_no_sample_is_refused(sent, tiny_world, anna):
     assert not Command.objects.exists()
 
 
-def test_a_large_sample_is_a_job(tiny_world, anna):
-    anna.post(PAGE, {"sample": MOST_SAMPLED_AT_ONCE + 1, "seed": 1, "balanced": "lines"})
+def test_a_sample_of_a_large_language_is_one_job_that_pages_lead_to(tiny_world, anna, monkeypatch):
+    monkeypatch.setattr(language_size, "MOST_COMMANDS", 2)
+    sent = {"sample": 1, "seed": 1, "balanced": "lines"}
+    answers = [anna.post(PAGE, sent) for _ in range(2)]
     job = Job.objects.get(kind=JobKind.GENERATE)
-    assert job.arguments == {"sample": MOST_SAMPLED_AT_ONCE + 1, "seed": 1, "balanced": "lines"}
+    assert job.arguments == sent
+    assert [answer.url for answer in answers] == [f"/jobs/{job.pk}/"] * 2
+    assert f'href="/jobs/{job.pk}/"' in anna.get("/w/home/templates/").content.decode()
 
 
 def test_a_reviewer_neither_sees_the_page_nor_draws(tiny_world, rene):

@@ -111,7 +111,7 @@ def test_a_worker_parses_a_batch_and_its_answers_are_downloaded(world, ask):
     asked = ask("post", f"parse/jobs/?beam=2&run={run.pk}", BOWL * 100 + b"nonsense\n\n" + BOWL)
     assert asked.status_code == 202
     path = f"jobs/{asked.json()['id']}/"
-    assert ask("get", f"{path}result/").status_code == 404
+    assert ask("get", f"{path}result/").status_code == 409  # too early
     assert carry_out_next().report == {"lines": 102, "run": run.pk, "parser": "knn"}
     assert ask("get", path).json()["status"] == "succeeded"
     answers = answers_of(ask("get", f"{path}result/"))
