@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from posixpath import commonpath, dirname
 
 from annotations.importing.predicates_file import PREDICATES_FILE

@@ -106,7 +106,8 @@ def read_one_file(upload: UploadedFile, is_wanted: Callable[[str], bool], most_b
         LanguageError: it is too large, or an archive without one such file.
     """
     if not is_archive(upload):
-        is_wanted = bool
+        refuse_too_much(upload.name, [_member_of(upload)], 1, most_bytes)
+        return _content(upload, most_bytes)
     gathered = read_files([upload], is_wanted, most_bytes)
     if len(gathered.files) != 1:
         names = ", ".join(sorted(gathered.files)[:5]) or "none"
@@ -204,7 +205,7 @@ def _members(
             if is_archive(upload):
                 yield from open_members(upload, upload.name, stack)
             else:
-                yield Member(path_of(upload), upload.size, upload.size, partial(_content, upload))
+                yield _member_of(upload)
     elif Path(source).is_file():
         file = stack.enter_context(Path(source).open("rb"))  # noqa: SIM115
         yield from open_members(file, Path(source).name, stack)
@@ -214,6 +215,10 @@ def _members(
             size = path.stat().st_size if path.exists() else 0
             written = file_name(os.fsencode(path.relative_to(folder)))
             yield Member(written, size, size, partial(read_file, path, folder))
+
+
+def _member_of(upload: UploadedFile) -> Member:
+    return Member(path_of(upload), upload.size, upload.size, partial(_content, upload))
 
 
 def _piece(data: bytes, most_bytes: int) -> bytes:

@@ -12,13 +12,16 @@ import zipfile
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
+from annotations.background import claim
 from annotations.campaigns.crowd_jobs import read_results
 from annotations.importing import archives
 from annotations.importing.competition_import import gather_competition
 from annotations.importing.gathered_files import gather
 from annotations.importing.pair_files import gather_pairs, read_pair_folder
 from annotations.importing.source_files import clean_path
+from annotations.jobs.carrying_out import carry_out
 from annotations.language.errors import LanguageError
+from annotations.models import Job
 from tests.annotations.language.ontology.test_competition_folder import FOLDER
 
 RULES = "$Main = bring me the caf\u00e9 cup\n"
@@ -223,3 +226,50 @@ def test_what_is_no_archive_is_refused_with_its_name(kind, read, monkeypatch):
 )
 def test_paths_have_one_form(written, path):
     assert clean_path(written) == path
+
+
+@pytest.mark.parametrize("way", ["page", "rest"])
+def test_a_folder_of_pairs_is_sent_with_its_paths(world, adam, way):
+    address = f"/{'w' if way == 'page' else 'api/v1/worlds'}/home/import/pairs/"
+    paths = ["Walker/gen/train.txt", "Walker/gen/val.txt"]
+    sent = [SimpleUploadedFile(path, PAIRS.encode()) for path in paths]
+    adam.post(address, {"name": "w", "archive": sent, "paths": paths})
+    assert world.splits.get(name="w-command").examples.count() == 2
+
+
+@pytest.mark.parametrize("way", ["page", "rest"])
+def test_an_arena_is_asked_for_and_chosen(world, admin, adam, way, settings, tmp_path):
+    settings.VAR_DIR = tmp_path
+    files = {path.replace(".md", "_b.md"): text for path, text in FOLDER.items()}
+    files |= {path.replace(".md", "_a.md"): text for path, text in FOLDER.items()}
+    data = uploaded(zipped(files), "x.zip")
+    start = f"/{'w' if way == 'page' else 'api/v1/worlds'}/home/import/competition/"
+    adam.post(start, {"files": data})
+    job = Job.objects.get()
+    assert job.is_waiting_for_answer and job.report["arenas"] == ["a", "b"]
+    answer = (
+        f"/jobs/{job.pk}/answer/" if way == "page" else f"/api/v1/worlds/home/jobs/{job.pk}/answer/"
+    )
+    options = {} if way == "page" else {"content_type": "application/json"}
+    for arena in "cb":  # there is no arena c
+        adam.post(answer, {"arena": arena}, **options)
+    answered = Job.objects.latest("pk")
+    assert answered.pk != job.pk
+    carry_out(claim("a worker", "quick", Job, answered))
+    answered.refresh_from_db()
+    assert answered.report["entities"]["room"] == 2 and not answered.report["is_waiting"]
+
+
+@pytest.mark.parametrize("form", ["（go “kitchen”）", "(go «kitchen»)", "(go ‘kitchen’)"])
+def test_forms_of_word_processors_are_read_in_files(world, form):
+    pairs = read_pair_folder(
+        gather_pairs({"gen/train.txt": f"go to the kitchen\n{form}\n".encode()})
+    )
+    ((pair,),) = pairs.pairs.values()
+    assert pair.canonical_form == '( go " kitchen " )' and not pairs.problems
+
+
+def test_an_archive_with_one_table_is_utterances(world, adam):
+    data = zipped({"R/said.csv": "id,text\n1,bring me the plum\n", "__MACOSX/R/._said.csv": "x"})
+    adam.post("/api/v1/worlds/home/uploads/", {"file": uploaded(data, "x.zip")[0]})
+    assert world.utterances.get().text == "bring me the plum"

@@ -9,9 +9,9 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.exporting.generator_export import generator_files
-from annotations.importing.gathered_files import GatheredFiles, flatten
-from annotations.importing.generator_import import import_generator
+from annotations.importing.gathered_files import GatheredFiles
 from annotations.importing.gathered_files import gather as files_of
+from annotations.importing.generator_import import import_generator
 from annotations.language.errors import LanguageError
 from annotations.models import Entity, Production, SemanticTemplate, World
 from annotations.rows.from_rows import task_categories
