@@ -6,13 +6,12 @@ from http import HTTPStatus
 from typing import Any
 
 from annotations.campaigns.crowd_results import new_campaign, plan_results, store_results
-from annotations.importing.uploaded_files import UploadedFile, is_archive
-from annotations.importing.zip_archives import open_archive, read_member
+from annotations.importing.source_files import UploadedFile, read_one_file
 from annotations.jobs.files import kept_uploads
 from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress
 from annotations.language.corpus import CrowdTable, read_crowd_results
-from annotations.language.errors import LanguageError, Position, Refusal
+from annotations.language.errors import LanguageError, Refusal
 from annotations.models import Campaign, Job, JobKind, User, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.utterances.upload_reading import decode_upload
@@ -32,7 +31,7 @@ def start_results_import(
     """Queue the check of a table of results; nothing is imported before somebody confirms its report.
 
     Args:
-        upload: a table, or a zip archive with one in it.
+        upload: a table, or an archive with one in it.
         campaign: whose prompts were answered; without one a new campaign is made, called ``name``.
         encoding: of the file; without one it is recognised.
 
@@ -74,27 +73,13 @@ def read_results(upload: UploadedFile, encoding: str = "") -> tuple[CrowdTable, 
     Raises:
         LanguageError: it is too large, no text, or an archive without one table.
     """
-    text, encoding = decode_upload(_content_of(upload), upload.name, encoding)
+    data = read_one_file(upload, _is_table, MOST_BYTES)
+    text, encoding = decode_upload(data, upload.name, encoding)
     return read_crowd_results(text, upload.name, MOST_CHARACTERS), encoding
 
 
-def _content_of(upload: UploadedFile) -> bytes:
-    if not is_archive(upload):
-        if upload.size > MOST_BYTES:
-            sentence = f"the file is larger than {MOST_BYTES:,} bytes"
-            raise LanguageError(sentence, Position(upload.name), "split it up")
-        return upload.read()
-    with open_archive(upload, upload.name, 1, MOST_BYTES, _is_table) as archive:
-        members = [each for each in archive.infolist() if _is_table(each.filename)]
-        if len(members) != 1:
-            sentence = "there is no table in this archive"
-            raise LanguageError(sentence, Position(upload.name), "pack one .csv file")
-        return read_member(archive, members[0], MOST_BYTES)
-
-
 def _is_table(path: str) -> bool:
-    name = path.rsplit("/", 1)[-1]
-    return name.lower().endswith(_TABLES) and not name.startswith(".")
+    return path.lower().endswith(_TABLES)
 
 
 def _campaign_of(job: Job, world: World, table: CrowdTable) -> Campaign:

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.checking.entity_check import entity_problems
 from annotations.checking.world_problems import check_again
+from annotations.importing.gathered_files import convert
 from annotations.importing.import_reports import Refusable
+from annotations.importing.source_files import FileSource, GatheredFiles, read_files
 from annotations.importing.target_world import lock_world, require_world_name
-from annotations.language.decoding import read_tree
-from annotations.language.errors import LanguageError, Position, Problem, error_at
+from annotations.language.errors import LanguageError, Problem
 from annotations.language.ontology import (
     COMPETITION_CLASSES,
     PUBLISHED_GENERATORS,
     Entity,
     Ontology,
+    choose_files,
+    guess_room,
     lost_rows,
-    place_in_folder,
+    may_be_in_folder,
     read_competition,
     warnings_of_lost,
 )
@@ -43,7 +45,8 @@ class CompetitionReport(Refusable):
     ``problems`` say which, and what grammar and templates ask for that no entity of the world is.
 
     With an error among the ``problems`` nothing was stored. ``left_out`` are entities that people have deleted or
-    renamed here.
+    renamed here. ``guessed_rooms`` are those that the names of such locations say; nobody has stored them. With
+    ``arenas`` nothing was stored either: the folder has files of several, and one has to be chosen.
     """
 
     world: str
@@ -53,9 +56,17 @@ class CompetitionReport(Refusable):
     problems: tuple[Problem, ...] = ()
     changes: Changes = field(default_factory=Changes)
     left_out: tuple[str, ...] = ()
+    guessed_rooms: Mapping[str, str] = field(default_factory=dict)
+    arenas: tuple[str, ...] = ()
+
+    @property
+    def is_waiting(self) -> bool:
+        return bool(self.arenas) and not self.is_refused
 
     def as_json(self) -> dict[str, Any]:
-        told = {name: getattr(self, name) for name in ("world", "without_room", "left_out")}
+        told = {
+            name: getattr(self, name) for name in ("world", "without_room", "left_out", "arenas")
+        }
         return {
             **{
                 name: list(value) if isinstance(value, tuple) else value
@@ -65,15 +76,19 @@ class CompetitionReport(Refusable):
             "lost": {name: dict(counts) for name, counts in self.lost.items()},
             "problems": [as_json(problem) for problem in self.problems],
             "changes": asdict(self.changes),
+            "guessed_rooms": dict(self.guessed_rooms),
+            "is_waiting": self.is_waiting,
         }
 
 
 def import_competition(
     world_name: str,
-    source: Path | Mapping[str, bytes],
+    source: FileSource | GatheredFiles,
     by: User | None = None,
     progress: Progress = UNWATCHED,
     brings_back: bool = False,
+    encoding: str = "",
+    arena: str = "",
 ) -> CompetitionReport:
     """Make the names, rooms, locations and objects of a world those of a folder.
 
@@ -82,33 +97,42 @@ def import_competition(
 
     Args:
         world_name: created if it does not exist.
-        source: a folder, which the four files may lie in at any depth; or path → bytes.
+        source: what ``read_files`` takes, which the four files may lie in at any depth; or what ``gather_competition``
+            has made of it.
         by: who asked; they become the admin of a world that this creates.
         brings_back: whether entities that people have deleted here are restored.
+        encoding: of the files that are not UTF-8.
+        arena: whose files are taken where the folder has those of several.
 
     Returns:
         What was read and done. If any problem is an error, nothing was stored.
     """
     try:
         require_world_name(world_name)
-        files, problems = _gather(source)
+        gathered = source if isinstance(source, GatheredFiles) else gather_competition(source)
     except LanguageError as error:
         return CompetitionReport(world_name, problems=(error.problem,))
     progress.report(0.2, "reading the files")
-    ontology, unread = read_competition(files)
+    choice = choose_files(gathered.files, arena, gathered.others)
+    if choice.arenas and not choice.problems:
+        return CompetitionReport(world_name, arenas=choice.arenas)
+    paths = choice.paths.items()
+    files = convert(GatheredFiles({place: gathered.files[path] for place, path in paths}), encoding)
+    ontology, unread = read_competition(files.files)
+    found = [*gathered.problems, *choice.problems, *files.problems, *unread]
     report = CompetitionReport(
         world_name,
         entities=dict(Counter(each.entity_class for each in ontology.entities)),
-        problems=first_problems((*problems, *unread)),
+        problems=first_problems(found),
     )
     if report.is_refused:
         return report
-    lost = tuple(lost_rows(files, ontology))
+    lost = tuple(lost_rows(files.files, ontology))
     of_generators = {
         name: Counter(row.entity.entity_class for row in lost if row.generator == name)
         for name in PUBLISHED_GENERATORS
     }
-    found = [*report.problems, *warnings_of_lost(lost)]
+    found += warnings_of_lost(lost)
     categories = _categories_of(world_name)
     progress.report(0.6, "writing")
     with progress.writing():
@@ -124,7 +148,8 @@ def import_competition(
             lost=of_generators,
             problems=first_problems(found),
             changes=changes,
-            without_room=tuple(_without_room(world)),
+            without_room=(without_room := tuple(_without_room(world))),
+            guessed_rooms=_guess_rooms(without_room, ontology),
             left_out=tuple(f"{row} ({why})" for row, why in planned.left_out),
         )
         progress.conclude(report.as_json())
@@ -192,21 +217,11 @@ def _without_room(world: World) -> list[str]:
     return [each.text for each in locations.order_by("position") if not each.attributes.get("room")]
 
 
-def _gather(source: Path | Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Problem]]:
-    """Return the files of the folder by their place in it. Raises LanguageError where two have one place."""
-    problems: list[Problem] = []
-    if isinstance(source, Path):
-        files, problems = read_tree(source, lambda path: bool(place_in_folder(path)))
-    else:
-        files = dict(source)
-    gathered: dict[str, bytes] = {}
-    for path in sorted(files, key=lambda path: (path.count("/"), path)):
-        place = place_in_folder(path)
-        if place and place in gathered:
-            sentence = f"there are two files {place}"
-            problems.append(
-                error_at(Position(path), sentence, "choose the folder of one competition")
-            )
-        elif place:
-            gathered[place] = files[path]
-    return gathered, problems
+def _guess_rooms(locations: Iterable[str], ontology: Ontology) -> dict[str, str]:
+    rooms = [each.text for each in ontology.of_class("room")]
+    return {each: room for each in locations if (room := guess_room(each, rooms))}
+
+
+def gather_competition(source: FileSource) -> GatheredFiles:
+    """Return the files that may be of a competition's folder. Raises LanguageError as ``read_files``."""
+    return read_files(source, may_be_in_folder)

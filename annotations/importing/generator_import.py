@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, Self
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.checking.world_problems import check_again
 from annotations.generation.coverage import count_coverage, known_commands, store_coverage
-from annotations.importing.gathered_files import GatheredFiles, gather
+from annotations.importing.gathered_files import gather
 from annotations.importing.generator_files import Generator, read_generator
 from annotations.importing.import_plans import (
     differences_of,
@@ -23,6 +21,7 @@ from annotations.importing.import_plans import (
     plan_templates,
 )
 from annotations.importing.import_reports import ImportReport
+from annotations.importing.source_files import FileSource, GatheredFiles
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.errors import LanguageError
 from annotations.language.symbols import DEFAULT_CLASSES
@@ -37,7 +36,7 @@ from annotations.rows.synchronise import Changes, RowPlan, synchronise
 
 def import_generator(
     world_name: str,
-    source: Path | str | Mapping[str, bytes] | GatheredFiles,
+    source: FileSource | GatheredFiles,
     by: User | None = None,
     progress: Progress = UNWATCHED,
     may_remove: bool = True,

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from annotations.importing.competition_import import CompetitionReport, import_competition
+from annotations.importing.competition_import import (
+    CompetitionReport,
+    gather_competition,
+    import_competition,
+)
+from annotations.importing.gathered_files import gather
 from annotations.importing.generator_import import import_generator
 from annotations.importing.import_reports import ImportReport, PairsReport
+from annotations.importing.pair_files import gather_pairs
 from annotations.importing.pair_import import import_pairs
-from annotations.importing.uploaded_files import (
-    UploadedFile,
-    competition_files_of,
-    files_of,
-    unpacked_pairs,
-    unpacked_size,
-)
 from annotations.jobs.files import kept_uploads
 from annotations.jobs.requesting import keep_question, request_job
 from annotations.jobs.watching import JobProgress
@@ -42,9 +41,7 @@ def start_generator_import(
     """
     kind = JobKind.IMPORT_GENERATOR
     choices = {"brings_back": brings_back, "encoding": encoding}
-    if unpacked_size(uploads) > MOST_BYTES:
-        return request_job(kind, world.name, by, choices, uploads)
-    files = files_of(uploads, encoding)
+    files = gather(uploads, encoding)
     if is_heavy_generator(files.files, classes_of(world)):
         return request_job(kind, world.name, by, choices, uploads)
     report = import_generator(world.name, files, by, may_remove=False, brings_back=brings_back)
@@ -73,7 +70,7 @@ def is_heavy_generator(files: Mapping[str, bytes], classes: EntityClasses) -> bo
 
 def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
     with kept_uploads(job) as uploads:
-        files = files_of(uploads, job.arguments.get("encoding", ""))
+        files = gather(uploads, job.arguments.get("encoding", ""))
     report = import_generator(
         *(job.world_name, files, job.created_by, progress),
         may_remove=bool(job.arguments.get("is_confirmed")),
@@ -83,53 +80,63 @@ def import_generator_of(job: Job, progress: JobProgress) -> dict[str, Any]:
 
 
 def start_competition_import(
-    world: World, uploads: Sequence[Any], by: User, brings_back: bool = False
+    world: World, uploads: Sequence[Any], by: User, **choices: Any
 ) -> Job | CompetitionReport:
-    """Raises LanguageError where the uploads cannot be read."""
-    files = competition_files_of(uploads)
-    if sum(map(len, files.values())) > MOST_BYTES:
-        choices = {"brings_back": brings_back}
-        return request_job(JobKind.IMPORT_COMPETITION, world.name, by, choices, uploads)
-    return import_competition(world.name, files, by, brings_back=brings_back)
+    """Import now, or queue a job. A folder with several arenas becomes a job that asks for one.
+
+    Args:
+        choices: ``brings_back``, ``encoding`` and ``arena`` of ``import_competition``.
+
+    Raises:
+        LanguageError: the uploads cannot be read.
+    """
+    kind, files = JobKind.IMPORT_COMPETITION, gather_competition(uploads)
+    if sum(map(len, files.files.values())) > MOST_BYTES:
+        return request_job(kind, world.name, by, choices, uploads)
+    report = import_competition(world.name, files, by, **choices)
+    if report.is_waiting:
+        return keep_question(kind, world.name, by, choices, uploads, report.as_json())
+    return report
 
 
 def import_competition_of(job: Job, progress: JobProgress) -> dict[str, Any]:
     with kept_uploads(job) as uploads:
-        files = competition_files_of(uploads)
-    choices = {"brings_back": bool(job.arguments.get("brings_back"))}
+        files = gather_competition(uploads)
+    names = ("brings_back", "encoding", "arena")
+    choices = {name: job.arguments[name] for name in names if name in job.arguments}
     return import_competition(job.world_name, files, job.created_by, progress, **choices).as_json()
 
 
 def start_pairs_import(
     world: World,
     name: str,
-    archive: UploadedFile,
+    uploads: Sequence[Any],
     by: User,
     brings_back: bool = False,
     encoding: str = "",
     notation: str = "",
 ) -> Job | PairsReport:
-    """Raises LanguageError where the archive cannot be read."""
-    if unpacked_size([archive]) > MOST_BYTES:
-        choices = {"brings_back": brings_back, "encoding": encoding, "notation": notation}
-        arguments = {"name": name, **choices}
-        return request_job(JobKind.IMPORT_PAIRS, world.name, by, arguments, uploads=[archive])
-    with unpacked_pairs(archive, notation) as folder:
-        return import_pairs(
-            *(world.name, name, folder, by),
-            brings_back=brings_back,
-            encoding=encoding,
-            notation=notation,
-        )
+    """Import now, or queue a job. Raises LanguageError where the uploads cannot be read."""
+    files = gather_pairs(uploads, notation)
+    choices = {"brings_back": brings_back, "encoding": encoding, "notation": notation}
+    if sum(map(len, files.files.values())) > MOST_BYTES:
+        return request_job(JobKind.IMPORT_PAIRS, world.name, by, {"name": name, **choices}, uploads)
+    return import_pairs(
+        *(world.name, name, files, by),
+        brings_back=brings_back,
+        encoding=encoding,
+        notation=notation,
+    )
 
 
 def import_pairs_of(job: Job, progress: JobProgress) -> dict[str, Any]:
     encoding, notation = (job.arguments.get(name, "") for name in ("encoding", "notation"))
-    with kept_uploads(job) as (archive,), unpacked_pairs(archive, notation) as folder:
-        report = import_pairs(
-            *(job.world_name, job.arguments["name"], folder, job.created_by, progress),
-            brings_back=bool(job.arguments.get("brings_back")),
-            encoding=encoding,
-            notation=notation,
-        )
-        return report.as_json()
+    with kept_uploads(job) as uploads:
+        files = gather_pairs(uploads, notation)
+    report = import_pairs(
+        *(job.world_name, job.arguments["name"], files, job.created_by, progress),
+        brings_back=bool(job.arguments.get("brings_back")),
+        encoding=encoding,
+        notation=notation,
+    )
+    return report.as_json()

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from pathlib import Path
 
-from annotations.importing.gathered_files import GatheredFiles, convert
+from annotations.importing.gathered_files import convert
+from annotations.importing.source_files import FileSource, GatheredFiles, by_place, read_files
 from annotations.language.corpus import (
     CORPUS_FOLDERS,
     PARTS,
@@ -19,13 +19,10 @@ from annotations.language.corpus import (
     read_pairs,
     read_triples,
 )
-from annotations.language.decoding import MAX_FILE_BYTES, MAX_FILES, read_folder
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
+from annotations.language.errors import Position, Problem, error_at, warning_at
 from annotations.language.grammar import TRIPLE_FILES
 
-_TEXTS = "*.[tT][xX][tT]"
 _TABLES = (".csv", ".tsv")
-_TRIPLES = f"[pP][aA][rR][aA]{_TEXTS}"
 _OF_OTHERS = "paraphrased", "command"  # people ask, and no two parts share a question
 
 
@@ -50,28 +47,24 @@ class PairFolder:
 
 
 def read_pair_folder(
-    folder: Path,
-    most_bytes: int = MAX_FILE_BYTES,
+    found: GatheredFiles,
     encoding: str = "",
     notation: str = Notation.OURS,
 ) -> PairFolder:
-    """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there.
+    """Read ``gen para gen_logical para_logical`` and the grounded triples, those that are there, in whatever folders.
 
-    The case of letters plays no part in names of files and folders. A file with more than ``most_bytes`` is
-    a problem. Nothing is raised; a folder with none of them is a problem too.
-
-    With ``Notation.LAMBDA`` it reads ``train``, ``dev`` and ``test`` of another corpus directly in ``folder``.
+    The case of letters plays no part in names of files and folders. Nothing is raised; a folder with none of them is a
+    problem. With ``Notation.LAMBDA`` it reads ``train``, ``dev`` and ``test`` of another corpus.
     """
     pairs: dict[tuple[str, str, str], tuple[WrittenPair, ...]] = {}
     paths: dict[tuple[str, str, str], str] = {}
     triples: list[GroundedTriple] = []
     problems: list[Problem] = []
     is_foreign = notation == Notation.LAMBDA
-    contents = dict(_contents(folder, is_foreign, most_bytes, problems))
-    for name in () if is_foreign else _tables(folder):
+    for path in () if is_foreign else filter(_is_table, found.others):
         hint = "import results of a crowd market on the page Campaigns"
-        problems.append(warning_at(Position(name), "a table is no pair file; ignored", hint))
-    gathered = convert(GatheredFiles(contents), encoding)
+        problems.append(warning_at(Position(path), "a table is no pair file; ignored", hint))
+    gathered = convert(by_place(found, _places(notation)), encoding)
     problems += gathered.problems
     for path, data in gathered.files.items():
         directory, _, name = path.lower().rpartition("/")
@@ -97,38 +90,36 @@ def read_pair_folder(
             problems.append(warning_at(Position(path), "not a pair file; ignored", hint))
     if not (pairs or triples or any(problem.is_error for problem in problems)):
         names = ", ".join([*CORPUS_FOLDERS, *sorted(TRIPLE_FILES)])
-        problems.append(
-            error_at(Position(folder.name), "there are no pairs here", f"known are {names}")
-        )
+        problems.append(error_at(Position(), "there are no pairs here", f"known are {names}"))
     return PairFolder(pairs, tuple(triples), tuple(sorted(problems)))
 
 
-def is_table(name: str) -> bool:
-    return name.lower().endswith(_TABLES) and not name.startswith(".")
+def gather_pairs(
+    source: FileSource, notation: str = Notation.OURS, most_bytes: int | None = None
+) -> GatheredFiles:
+    """Return the files that may be of a corpus. Raises LanguageError as ``read_files``."""
+    place_of = _places(notation)
+    return read_files(source, lambda path: bool(place_of(path)), most_bytes)
 
 
-def _tables(folder: Path) -> list[str]:
-    """Return the names of tables in ``folder``, which hold no pairs."""
-    return sorted(path.name for path in folder.glob("*") if is_table(path.name))[:MAX_FILES]
+def _places(notation: str) -> Callable[[str], str]:
+    return _name_alone if notation == Notation.LAMBDA else _place_of_pairs
 
 
-def _contents(
-    folder: Path, is_foreign: bool, most_bytes: int, problems: list[Problem]
-) -> Iterator[tuple[str, bytes]]:
-    """Yield path inside the folder → bytes, for every file that may be one of a corpus."""
-    try:
-        if is_foreign:
-            yield from read_folder(folder, "[!.]*", most_bytes).items()
-            return
-        for name, data in read_folder(folder, _TRIPLES, most_bytes).items():
-            if name.lower() in TRIPLE_FILES:
-                yield name, data
-        folders = sorted(path.name for path in folder.iterdir() if path.is_dir())
-        for known in CORPUS_FOLDERS:
-            for directory in folders:
-                if directory.lower() == known:
-                    files = read_folder(folder / directory, _TEXTS, most_bytes)
-                    for name, data in files.items():
-                        yield f"{directory}/{name}", data
-    except LanguageError as error:
-        problems.append(error.problem)
+def _is_table(path: str) -> bool:
+    return path.lower().endswith(_TABLES)
+
+
+def _place_of_pairs(path: str) -> str:
+    """Return where a file of a corpus belongs; empty for any other."""
+    *_, directory, name = f"//{path}".split("/")
+    if name.lower() in TRIPLE_FILES:
+        return name
+    is_corpus = directory.lower() in CORPUS_FOLDERS and name.lower().endswith(".txt")
+    return f"{directory}/{name}" if is_corpus else ""
+
+
+def _name_alone(path: str) -> str:
+    """Return where a file of another corpus belongs, beside the others; empty for any other."""
+    name = path.rsplit("/", 1)[-1]
+    return name if foreign_part(name) else ""

@@ -7,17 +7,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from operator import attrgetter
-from pathlib import Path
 
 from django.db.models import Max
 
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.importing.import_reports import PairsReport
-from annotations.importing.pair_files import Notation, PairFolder, read_pair_folder
+from annotations.importing.pair_files import Notation, PairFolder, gather_pairs, read_pair_folder
 from annotations.importing.prompt_sources import PromptSource, SourceFinder
+from annotations.importing.source_files import FileSource, GatheredFiles
 from annotations.importing.target_world import lock_world, require_world_name
 from annotations.language.corpus import GroundedTriple, Part, WrittenPair, distance
-from annotations.language.decoding import MAX_FILE_BYTES
 from annotations.language.errors import LanguageError
 from annotations.models import Example, Paraphrase, User, World
 from annotations.models.splits import Source
@@ -32,21 +31,22 @@ MOST_ATTEMPTS = 3
 def import_pairs(
     world_name: str,
     name: str,
-    folder: Path | str,
+    source: FileSource | GatheredFiles,
     by: User | None = None,
     progress: Progress = UNWATCHED,
     brings_back: bool = False,
-    most_bytes: int = MAX_FILE_BYTES,
+    most_bytes: int | None = None,
     encoding: str = "",
     notation: str = Notation.OURS,
 ) -> PairsReport:
-    """Take the splits and paraphrases of ``folder`` into a world, all of them or nothing.
+    """Take the splits and paraphrases of a corpus into a world, all of them or nothing.
 
     Args:
         world_name: made where there is none.
         name: of the splits: ``name-command`` and ``name-logical_form``.
-        folder: with any of ``gen para gen_logical para_logical`` and ``paraphrasings.txt``.
-        most_bytes: of one file. What is uploaded packs well, so the default is small.
+        source: what ``read_files`` takes, or what ``gather_pairs`` has made of it, with any of ``gen para gen_logical
+            para_logical`` and ``paraphrasings.txt``.
+        most_bytes: of all files. What is uploaded packs well, so the default is small.
         encoding: of the files that are not UTF-8 (``decoding.ENCODINGS``); without one, they are errors.
         notation: of the forms. Of another corpus, what cannot be read is left out and counted by reason.
 
@@ -55,7 +55,12 @@ def import_pairs(
     that people have deleted stays away unless ``brings_back``.
     """
     progress.report(0, "reading the pairs")
-    files = read_pair_folder(Path(folder), most_bytes, encoding, notation)
+    try:
+        if not isinstance(source, GatheredFiles):
+            source = gather_pairs(source, notation, most_bytes)
+        files = read_pair_folder(source, encoding, notation)
+    except LanguageError as error:
+        return PairsReport(world_name, problems=(error.problem,))
     counts: dict[str, dict[str, dict[str, int]]] = {}
     for (criterion, source, part), pairs in files.pairs.items():
         counts.setdefault(criterion, {}).setdefault(source, {})[part] = len(pairs)

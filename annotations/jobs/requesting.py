@@ -100,22 +100,25 @@ def refusal_in(report: Mapping[str, Any]) -> str:
     return f"Nothing was imported: {say_count(errors, 'error')}." if errors else ""
 
 
-def answer_job(job: Job, by: User) -> Job:
+def answer_job(job: Job, by: User, arena: str = "") -> Job:
     """Queue the import that ``job`` asked about, now confirmed: it may do what the report says.
 
-    Raises Refusal where the question was answered already.
+    Raises Refusal where the question was answered already, or asks for another ``arena``.
     """
     with transaction.atomic():
         asked = Job.objects.select_for_update().get(pk=job.pk)
         if not asked.is_waiting_for_answer:
             said = "This import has been answered already."
             raise Refusal(said, "already_answered", HTTPStatus.CONFLICT)
+        if (arenas := (asked.report or {}).get("arenas", ())) and arena not in arenas:
+            raise Refusal(f"Choose one of the arenas {', '.join(arenas)}.", "no_such_arena")
         _settle_question(asked)
         if not folder_of(asked).is_dir():
             said = "The files are no longer here. Choose them again."
             raise Refusal(said, "files_gone", HTTPStatus.CONFLICT)
         answer = _new_job(asked.kind, asked.world_name, by, asked.arguments, ())
-        answer.arguments = {**asked.arguments, "is_confirmed": True}
+        chosen = {"arena": arena} if arenas else {}
+        answer.arguments = {**asked.arguments, **chosen, "is_confirmed": True}
         answer.save()
         _take_folder(answer, folder_of(asked))
         background.wake(answer)
@@ -156,7 +159,11 @@ def _new_job(
     arguments: Mapping[str, Any] | None,
     uploads: Sequence[Any],
 ) -> Job:
-    names = {"files": [upload.name for upload in uploads]} if uploads else {}
+    names = (
+        {"files": [getattr(upload, "sent_path", "") or upload.name for upload in uploads]}
+        if uploads
+        else {}
+    )
     return Job(
         kind=kind,
         world=World.objects.present().filter(name=world_name).first(),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import os
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
@@ -52,7 +52,6 @@ _BYTE_ORDER_MARK = "\ufeff"
 _SAVE_AS = "save it as UTF-8 text"
 _PUT_IT_HERE = "put the file itself here, or name the folder that holds both"
 MAX_FILES = 200
-MAX_FILES_LOOKED_AT = 20_000
 MAX_FILE_BYTES = 20_000_000
 MAX_LINKS = 5  # one behind another
 _LONGEST_LINK = 300
@@ -74,50 +73,21 @@ def read_folder(
         raise LanguageError(
             f"the folder holds {len(paths)} files; {MAX_FILES} is the limit", Position(folder.name)
         )
-    return {path.name: _bytes_of(path, folder, most_bytes) for path in paths}
+    return {path.name: read_file(path, folder, most_bytes) for path in paths}
 
 
-def read_tree(
-    folder: Path, is_wanted: Callable[[str], bool], most_bytes: int = MAX_FILE_BYTES
-) -> tuple[dict[str, bytes], list[Problem]]:
-    """Return the files in and below ``folder`` whose paths ``is_wanted``: path → bytes.
+def walk_folder(folder: Path, problems: list[Problem]) -> Iterator[Path]:
+    """Yield the files in and below ``folder``. Hidden ones are skipped, and links to folders followed, each once.
 
-    Other files directly in ``folder`` come without their content. Hidden files and folders are skipped.
-    Links are followed as in ``read_folder``. Links to folders are followed too, each folder once.
-
-    Returns:
-        The files, and a problem for each file that cannot be read and each link that leads too far.
+    A link that leads out of the folder joins the ``problems``.
 
     Raises:
-        LanguageError: there is no such folder, or it holds too many files.
+        LanguageError: there is no such folder.
     """
     if not folder.is_dir():
         raise LanguageError("there is no such folder", Position(folder.name))
-    problems: list[Problem] = []
-    wanted: list[Path] = []
-    files: dict[str, bytes] = {}
-    looked_at = 0
-    for directory, subfolders, names in _walk(folder, problems):
-        looked_at += len(subfolders) + len(names) + 1
-        for name in sorted(name for name in names if not name.startswith(".")):
-            path = Path(directory, name)
-            if is_wanted(path.relative_to(folder).as_posix()):
-                wanted.append(path)
-            elif Path(directory) == folder:
-                files[name] = b""
-        if len(wanted) > MAX_FILES or looked_at > MAX_FILES_LOOKED_AT:
-            raise LanguageError(
-                f"the folder and those below it hold {looked_at:,} files or more; {MAX_FILES} that may "
-                "be of a generator are the limit",
-                Position(folder.name),
-                "name the folder of one generator",
-            )
-    for path in wanted:
-        try:
-            files[path.relative_to(folder).as_posix()] = _bytes_of(path, folder, most_bytes)
-        except LanguageError as error:
-            problems.append(error.problem)
-    return files, problems
+    for directory, _, names in _walk(folder, problems):
+        yield from (Path(directory, name) for name in sorted(names) if not name.startswith("."))
 
 
 def _walk(
@@ -146,6 +116,14 @@ def _walk(
         yield directory, subfolders, names
 
 
+def file_name(written: bytes) -> str:
+    """Return the name of a file as text: UTF-8, or else that of the oldest zip archives (code page 437)."""
+    try:
+        return written.decode()
+    except UnicodeDecodeError:
+        return written.decode("cp437")
+
+
 def link_target(data: bytes, name: str) -> str | None:
     """Return the target of a link that was stored as a text file ``name``; None for any other file.
 
@@ -162,10 +140,13 @@ def link_target(data: bytes, name: str) -> str | None:
     return target if is_alike and is_path and not set(target) & set("<>{}=$*?|\0") else None
 
 
-def _bytes_of(path: Path, folder: Path, most_bytes: int) -> bytes:
-    """Return the content of a file, or of the file that it links to.
+def read_file(path: Path, folder: Path, most_bytes: int) -> bytes:
+    """Return the content of a file in ``folder``, or of the file that it links to.
 
     A link may point to a file below the folder, or below the root of the repository that the folder is in.
+
+    Raises:
+        LanguageError: it cannot be read, is larger than ``most_bytes``, or links to a file elsewhere.
     """
     place = Position(path.relative_to(folder).as_posix())
     try:

@@ -12,7 +12,8 @@ Every entrance uses it: pages, REST, files, archives, and the utterances that pa
   how letters are drawn, and the same word is written with and without them. A robot's command has one
   spelling for one word; Unicode's own collation ignores them for the same reason.
 - Every blank becomes U+0020, and every separator of lines becomes ``\\n`` or a blank.
-- Letters are composed (NFC).
+- Letters are composed (NFC). Ligatures, full-width and mathematical letters and digits become plain ones: ﬁ is fi, Ａ
+  is A. Scripts and texts copied out of a PDF have them, and they look as the plain ones do.
 
 NUL and lone surrogates are no text at all. They stay, for the reader of the text to refuse them.
 """
@@ -49,7 +50,15 @@ _INVISIBLE = re.compile(
 _ODD_BLANK = re.compile(
     "[\x0b\x0c\x1c-\x1f\xa0\u115f\u1160\u1680\u2000-\u200a\u202f\u205f\u2800\u3000\u3164\uffa0]"
 )
+# Letters and digits in another shape: ligatures, the long s, full-width and mathematical ones.
+_SHAPED = re.compile(
+    "[\u0132\u0133\u017f\ufb00-\ufb06\uff10-\uff19\uff21-\uff3a\uff41-\uff5a\U0001d400-\U0001d7ff]+"
+)
 _LINE_END = re.compile("\r\n|[\r\x85\u2028\u2029]")
+# Letters and digits in another shape: ligatures, the long s, full-width and mathematical ones.
+_SHAPED = re.compile(
+    "[\u0132\u0133\u017f\ufb00-\ufb06\uff10-\uff19\uff21-\uff3a\uff41-\uff5a\U0001d400-\U0001d7ff]+"
+)
 _ODD_LINE_END = re.compile("[\x85\u2028\u2029]")
 # Where more marks than MOST_MARKS can be, which is seldom.
 _MANY_MARKS = re.compile(r"[^\x00-\x7f]{31,}")
@@ -63,6 +72,7 @@ class TextChanges:
 
     removed: int = 0
     composed: int = 0
+    shaped: int = 0
 
     @classmethod
     def of(cls, text: str) -> Self:
@@ -71,16 +81,20 @@ class TextChanges:
             return cls()
         kept = _INVISIBLE.sub("", text)
         bounded = _bound_marks(kept)
-        composed = sum(
-            not unicodedata.is_normalized("NFC", word) for word in bounded.split() if word
-        )
-        return cls(len(text) - len(bounded), composed)
+        words = bounded.split()
+        composed = sum(not unicodedata.is_normalized("NFC", word) for word in words)
+        shaped = sum(bool(_SHAPED.search(word)) for word in words)
+        return cls(len(text) - len(bounded), composed, shaped)
 
     def __bool__(self) -> bool:
-        return bool(self.removed or self.composed)
+        return bool(self.removed or self.composed or self.shaped)
 
     def __add__(self, other: TextChanges) -> TextChanges:
-        return TextChanges(self.removed + other.removed, self.composed + other.composed)
+        return TextChanges(
+            self.removed + other.removed,
+            self.composed + other.composed,
+            self.shaped + other.shaped,
+        )
 
     def __str__(self) -> str:
         parts = []
@@ -90,6 +104,9 @@ class TextChanges:
         if self.composed:
             things = "word has" if self.composed == 1 else "words have"
             parts.append(f"{self.composed:,} {things} composed letters (Unicode NFC) now")
+        if self.shaped:
+            things = "word has" if self.shaped == 1 else "words have"
+            parts.append(f"{self.shaped:,} {things} plain letters now for ligatures or wide ones")
         return ", ".join(parts)
 
 
@@ -99,6 +116,7 @@ def normalise(text: str) -> str:
         return text
     text = _LINE_END.sub("\n", text)
     text = _ODD_BLANK.sub(" ", _INVISIBLE.sub("", text))
+    text = _SHAPED.sub(lambda match: unicodedata.normalize("NFKC", match[0]), text)
     return unicodedata.normalize("NFC", _bound_marks(text))
 
 

@@ -23,6 +23,7 @@ from charset_normalizer import from_bytes
 from annotations.language.decoding import ENCODINGS
 from annotations.language.errors import LanguageError, Offsets, Position, Problem, error_at
 from annotations.language.text import has_half_character, normalise_line
+from annotations.utterances.foreign_formats import join_fragments, take_utterances
 
 MOST_BYTES = 2_000_000  # of one upload
 MOST_COLUMNS = 200
@@ -34,7 +35,8 @@ TOO_DEEP = "this nests too deep, or a number in it is too long"
 
 
 class UploadFormat(StrEnum):
-    """How an upload is written. ``PAIRS``: lines of command and form in turn, or triples."""
+    """How an upload is written. ``PAIRS``: lines of command and form in turn, or triples. ``TAKEN``: out of a
+    file of another program (``foreign_formats``)."""
 
     TEXT = "text"
     JSONL = "jsonl"
@@ -42,6 +44,7 @@ class UploadFormat(StrEnum):
     CSV = "csv"
     TSV = "tsv"
     PAIRS = "pairs"
+    TAKEN = "taken"
 
 
 FORMAT_NAMES = {
@@ -51,13 +54,24 @@ FORMAT_NAMES = {
     UploadFormat.CSV: "Table (CSV)",
     UploadFormat.TSV: "Table with tabs (TSV)",
     UploadFormat.PAIRS: "Pairs of command and logical form",
+    UploadFormat.TAKEN: "File of another program (Rasa, snips, subtitles, CoNLL, Kaldi)",
 }
 TABLES = (UploadFormat.CSV, UploadFormat.TSV)
 
 # What a column with utterances is called, the surest name first.
 TEXT_NAMES = (
-    *("utterance", "text", "sentence", "command", "query", "paraphrase", "transcript"),
-    *("instruction", "phrase", "said", "input", "question", "message", "content", "data"),
+    *("utterance", "utt", "text", "sentence", "command", "query", "paraphrase", "transcript"),
+    *(
+        "transcription",
+        "instruction",
+        "phrase",
+        "said",
+        "input",
+        "question",
+        "message",
+        "content",
+        "data",
+    ),
 )
 _USUAL_NAMES = (
     "id",
@@ -74,6 +88,9 @@ _USUAL_NAMES = (
 FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 _BETWEEN_WORDS = re.compile(r"[.\s_-]")
 _CROWD_HEAD = re.compile(r"[^\n]*\bAnswer\.(?:utterance|custom)\d", re.IGNORECASE)
+# What sentences do not have: brackets, markup, identifiers and paths.
+_UNSAID = re.compile(r"[\[\](){}<>_=|\\/@#]|\w:\w")
+_LETTERS_OF_WORD, _MOST_WORDS = 5, 8
 # The apostrophe with which exports keep spreadsheets from reading a formula.
 _FORMULA_GUARD = re.compile(r"\A'(?=[=+@-])")
 _RULER = re.compile(r":?-{2,}:?")  # a cell of the line below the head of a table in Markdown
@@ -214,8 +231,15 @@ def read_upload(
     """
     if not format:
         _refuse_other_files(text, source)
+    if format in ("", UploadFormat.TAKEN) and (said := take_utterances(text, source)):
+        rows = [UploadRow(line, {"text": told}) for line, told in said]
+        warning = "Utterances were taken out of the file; its intents and labels are left out."
+        return replace(_sheet(UploadFormat.TAKEN, rows), warnings=(warning,))
     chosen = UploadFormat(format) if format else recognise(text)
     match chosen:
+        case UploadFormat.TAKEN:
+            hint = "choose another format"
+            raise LanguageError("this is no such file of another program", Position(source), hint)
         case UploadFormat.JSON:
             return _read_json(text, source)
         case UploadFormat.JSONL:
@@ -259,12 +283,12 @@ def _refuse_other_files(text: str, source: str) -> None:
 def recognise(text: str) -> UploadFormat:
     """Return the format that ``text`` looks like. Pure and linear in its length."""
     start = text.lstrip()
-    if re.match(r"[\[{]\s*([\[{\"\]}]|-?\d|true|false|null|\Z)", start):
+    is_said = re.match(r"\[[^\[\]\"\n]*\][ \t]*\w", start)  # “[10:32] bring me the plum”
+    if not is_said and re.match(r"[\[{]\s*([\[{\"\]}]|-?\d|true|false|null|\Z)", start):
         first = start.split("\n", 1)[0].strip()
         rest = start[len(first) :].strip()
-        end = _end_of_json(first)
-        if end < 0 or not first[end:].strip()[:1].isalnum():  # else text: “[1] bring me the plum”
-            return UploadFormat.JSONL if end == len(first) and rest else UploadFormat.JSON
+        is_line = _end_of_json(first) == len(first)
+        return UploadFormat.JSONL if is_line and rest else UploadFormat.JSON
     lines = [line for line in text.split("\n") if line.strip()]
     is_quoted = all(
         line[:1] == '"' and _end_of_json(line.strip()) == len(line.strip()) for line in lines[:20]
@@ -469,6 +493,9 @@ def _read_json(text: str, source: str) -> Sheet:
         )
     except (ValueError, RecursionError):
         return Sheet(UploadFormat.JSON, problems=(error_at(Position(source), TOO_DEEP),))
+    if said := join_fragments(value):
+        rows = [UploadRow(number, {"text": told}) for number, told in enumerate(said, start=1)]
+        return _sheet(UploadFormat.JSON, rows)
     items = _find_items(value)
     if items is None:
         hint = "send a list of texts, or of objects with a text in each"
@@ -536,7 +563,11 @@ def _of_items(
     format: UploadFormat, items: Iterable[tuple[int, Any]], source: str, problems: list[Problem]
 ) -> Sheet:
     records: list[UploadRow] = []
+    items = list(items)
+    n_refused = _count_refused(items)
     for line, item in items:
+        if n_refused and item["answer"] != "accept":
+            continue
         try:
             values, has_half_text = _flat(item), _has_half_text(item)
         except RecursionError:  # it was just not too deep for being parsed
@@ -550,7 +581,18 @@ def _of_items(
             problems.append(error_at(Position(source, line), what, "write the whole character"))
         else:
             records.append(UploadRow(line, values))
-    return _sheet(format, records, problems=problems)
+    sheet = _sheet(format, records, problems=problems)
+    if n_refused:
+        warning = f"{n_refused:,} that Prodigy has as rejected or ignored are left out."
+        sheet = replace(sheet, warnings=(warning,))
+    return sheet
+
+
+def _count_refused(items: Sequence[tuple[int, Any]]) -> int:
+    """Return how many items of Prodigy somebody has rejected or ignored; 0 for other items."""
+    answers = [item.get("answer") if isinstance(item, dict) else None for _, item in items]
+    is_of_prodigy = all(each in ("accept", "reject", "ignore") for each in answers)
+    return sum(each != "accept" for each in answers) if is_of_prodigy else 0
 
 
 def _has_half_text(item: Any) -> bool:
@@ -652,8 +694,10 @@ def _sheet(
         names = names[:MOST_COLUMNS]
     with_text = {name for row in records for name, text in row.values.items() if text.strip()}
     filled = [name for name in names if name in with_text]
-    by_name = _best(filled, TEXT_NAMES) or _best(columns, TEXT_NAMES)
-    column = by_name or max(filled, key=lambda name: _length(records, name), default="")
+    likeness = {name: _likeness(records, name) for name in filled}
+    by_name = _best([name for name in filled if likeness[name]], TEXT_NAMES)
+    by_name = by_name or _best(filled, TEXT_NAMES) or _best(columns, TEXT_NAMES)
+    column = by_name or max(filled, key=likeness.__getitem__, default="")
     return Sheet(
         format,
         tuple(filled),
@@ -686,8 +730,12 @@ def _rank(name: str, known: Sequence[str]) -> tuple[int, int] | None:
     return None
 
 
-def _length(records: Sequence[UploadRow], name: str) -> float:
-    """Return the mean number of letters and blanks in a column, which is what texts are made of."""
-    texts = [row.values.get(name, "") for row in records[:200]]
-    letters = sum(sum(each.isalpha() or each == " " for each in text[:500]) for text in texts)
-    return letters / max(len(texts), 1)
+def _likeness(records: Sequence[UploadRow], name: str) -> float:
+    """Return how much a column reads as what people say: many different texts of several words, without markup."""
+    texts = [row.values.get(name, "")[:500] for row in records[:200]]
+    score = 0.0
+    for text in texts:
+        letters = sum(each.isalpha() for each in text)
+        if not _UNSAID.search(text) and 2 * letters > len(text):
+            score += min(letters / _LETTERS_OF_WORD, 2 * len(text.split()), _MOST_WORDS)
+    return score * len(set(texts)) / max(len(texts), 1) ** 2

@@ -10,6 +10,7 @@ from http import HTTPStatus
 from django.db import transaction
 from django.utils import timezone
 
+from annotations.importing.source_files import UploadedFile, read_one_file
 from annotations.labelling.collecting import (
     MOST_AT_ONCE,
     CollectedTexts,
@@ -25,6 +26,7 @@ from annotations.models import Label, Origin, Upload, User, Utterance, World
 from annotations.models.corpus import MOST_CHARACTERS_OF_NAME
 from annotations.utterances.upload_reading import (
     FORMAT_NAMES,
+    MOST_BYTES,
     MOST_PROBLEMS,
     TABLES,
     Sheet,
@@ -108,6 +110,11 @@ class Preview:
     @property
     def can_be_stored(self) -> bool:
         return self.refusal is None and bool(self.texts)
+
+
+def content_of(file: UploadedFile) -> bytes:
+    """Return the content of a file that was sent, or of the only one in an archive. Raises LanguageError."""
+    return read_one_file(file, bool, MOST_BYTES)
 
 
 def preview(

@@ -6,8 +6,8 @@ from typing import Any
 
 from django.conf import settings
 
+from annotations.importing.archives import open_archive
 from annotations.importing.target_world import require_world_name
-from annotations.importing.zip_archives import open_archive
 from annotations.jobs.files import kept_uploads
 from annotations.jobs.requesting import request_job
 from annotations.jobs.watching import JobProgress

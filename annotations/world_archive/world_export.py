@@ -12,7 +12,7 @@ from django.db.models import Count
 from annotations.exporting.generator_export import generator_files
 from annotations.exporting.pipe import Pipe
 from annotations.exporting.split_export import SplitFormat, export_lines, folder_of
-from annotations.importing.zip_archives import MANIFEST
+from annotations.importing.archives import MANIFEST
 from annotations.language.corpus import PART_FILES, TRIPLES_FILE
 from annotations.models import Duty, User, World
 from annotations.models.corpus import LabelQuerySet

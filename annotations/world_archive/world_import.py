@@ -15,8 +15,8 @@ from django.db import IntegrityError, models, transaction
 from django.utils import timezone
 
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.importing.archives import MANIFEST, open_archive, read_lines
 from annotations.importing.target_world import require_world_name
-from annotations.importing.zip_archives import MANIFEST, open_archive, read_lines
 from annotations.language.errors import LanguageError, Position, Problem, Refusal
 from annotations.language.symbols import EntityClasses
 from annotations.language.text import TextChanges, normalise_json, say_changes

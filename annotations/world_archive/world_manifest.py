@@ -9,7 +9,7 @@ from typing import Any, TypeGuard
 
 from django.db.models import Field
 
-from annotations.importing.zip_archives import MANIFEST, manifests_in, read_member
+from annotations.importing.archives import MANIFEST, manifests_in, read_member
 from annotations.language.errors import LanguageError, Position
 from annotations.models import World
 from annotations.world_archive.archive_tables import FORMAT, VERSION, WORLD_FIELDS, tables

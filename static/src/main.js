@@ -15,6 +15,7 @@ import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
 import "./filter-addresses.js";
+import "./folders.js";
 import { onContent } from "./content.js";
 import { focusFirstError } from "./first-error.js";
 import { enhanceForms } from "./forms.js";

@@ -107,9 +107,9 @@ class _Offering:
         yield from text_repairs.wildcards(
             ((PATTERN, sides.pattern), (FORM, sides.form)), source, offset, self.trial.classes
         )
-        yield from text_repairs.plain_quotes(text, source)
         yield from text_repairs.marks(text, source, offset)
         if source == PATTERN:
+            yield from text_repairs.plain_quotes(text)
             yield from text_repairs.in_pattern(text, offset)
         else:
             yield from text_repairs.in_form(text, sides.pattern, offset)
@@ -125,7 +125,7 @@ class _Offering:
     ) -> Iterator[RepairCandidate]:
         grammar = self.trial.grammar
         if source == PATTERN:
-            yield from text_repairs.plain_quotes(template.pattern_text, PATTERN)
+            yield from text_repairs.plain_quotes(template.pattern_text)
             yield from slot_repairs.undefined(template, grammar, offset)
             yield from text_repairs.unheard(template, grammar)
             yield from left_out(template, self.usage, grammar, offset)

@@ -85,23 +85,20 @@ def _bare_word(form: str, pattern: str, offset: int) -> Iterator[RepairCandidate
             )
 
 
-def plain_quotes(text: str, source: str) -> Iterator[RepairCandidate]:
-    """Yield candidates that write plain quotation marks for those that word processors put in, or remove them."""
+def plain_quotes(text: str) -> Iterator[RepairCandidate]:
+    """Yield candidates that write plain quotation marks into a pattern for those of word processors, or remove them."""
     marks = list(_CURLY.finditer(text))
     if not marks:
         return
 
     def write(single: str, double: str) -> list[TextEdit]:
         return [
-            TextEdit(source, each.start(), each.end(), single if each[0] in _SINGLE else double)
+            TextEdit(PATTERN, each.start(), each.end(), single if each[0] in _SINGLE else double)
             for each in marks
         ]
 
     yield candidate("Write plain quotation marks", write("'", '"'))
-    if source == FORM:  # where every quotation mark is a double one
-        yield candidate("Write plain quotation marks", write('"', '"'))
-    else:
-        yield candidate("Remove the quotation marks", write("'", ""), 0.1)
+    yield candidate("Remove the quotation marks", write("'", ""), 0.1)
 
 
 def wildcards(

@@ -17,6 +17,7 @@ from annotations.language.text import normalise_line
 MOST_ASSIGNMENTS = 20_000  # rows of a table
 MOST_ANSWERS = 300_000  # of a table
 MOST_COLUMNS = 2_000
+MOST_OF_FORMS = 5_000_000  # characters of different forms: some 20 s of reading
 # Answers of one assignment are compared with each other.
 _MOST_NUMBERED = {"answer.utterance": 100, "answer.custom": 20}
 LONGEST_WORKER = 100  # characters of somebody's id
@@ -124,6 +125,7 @@ class _Reader:
         self._worker = ""
         self._numbered: dict[str, list[tuple[str, int]]] = {}  # name → number and cell
         self._assignments: list[Assignment] = []
+        self._characters = 0
         self._answers = self._rejected = self._empty = self._comments = 0
         self._forms: dict[str, str | LanguageError] = {}  # as it is written → canonical
         self._commands: dict[str, str] = {}
@@ -254,6 +256,10 @@ class _Reader:
         if at is None or not written:
             return ""
         if written not in self._forms:
+            self._characters += len(written)
+            if self._characters > MOST_OF_FORMS:
+                sentence = f"the forms of the table have more than {MOST_OF_FORMS:,} characters"
+                raise LanguageError(sentence, Position(self._source, line, at + 1), "split it up")
             try:
                 self._forms[written] = canonical_text(read_form(normalise_line(written)))
             except LanguageError as error:

@@ -11,7 +11,13 @@ from annotations.language.forms.canonical import (
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
 from annotations.language.forms.difference import Change, Difference, diff, diff_unordered
 from annotations.language.forms.foreign_forms import read_foreign_form
-from annotations.language.forms.logic import TermSpan, read_form, read_spans, read_template_form
+from annotations.language.forms.logic import (
+    TermSpan,
+    plain_marks,
+    read_form,
+    read_spans,
+    read_template_form,
+)
 from annotations.language.forms.notations import to_corpus, to_reading, to_template
 from annotations.language.forms.references import (
     ANTECEDENTS,
@@ -84,6 +90,7 @@ __all__ = [
     "kind_of_class",
     "loose_references",
     "order_of",
+    "plain_marks",
     "predicates",
     "read_foreign_form",
     "read_form",

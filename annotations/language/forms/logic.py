@@ -47,6 +47,11 @@ _SHIELDED = r'"[^"]*"|\{[^{}]*\}'  # parentheses in here do not count
 _NESTING = re.compile(
     rf"{_SHIELDED}|(?P<call>(?<=[\w-])\()|(?P<open>\()|(?P<close>\))|(?P<reach>λ|lambda(?![\w-]))"
 )
+_DOUBLE, _SINGLE = "“”„‟«»＂〝〞", "‘’‚‛‹›`´"
+_TYPESET = re.compile(
+    rf'"[^"]*"|[{_DOUBLE}][^"{_DOUBLE}]*[{_DOUBLE}]|[{_SINGLE}][^"{_DOUBLE}{_SINGLE}()]*[{_SINGLE}]|[（）｛｝＄，：．＿＜＞]'
+)
+_PLAIN = str.maketrans("（）｛｝＄，：．＿＜＞", "(){}$,:._<>")
 _SHOWN = 40
 _BRACKETS = {
     '"': ("quotation mark", '"'),
@@ -71,12 +76,27 @@ def read_form(text: str, position: Position | None = None) -> Form:
         LanguageError: with the position, for text that is not a form, for a variable that no λ binds,
             and for a text, a name, a number or a nesting beyond ``limits``.
     """
-    return _read_at(text, position, (Lambda, Application, Unknown))
+    return _read_at(plain_marks(text), position, (Lambda, Application, Unknown))
+
+
+def plain_marks(text: str) -> str:
+    """Return a form with plain quotation marks and brackets for those of word processors, phones and East Asian fonts.
+
+    What stands between quotation marks stays. Each character stays in its place.
+    """
+    return text if text.isascii() else _TYPESET.sub(_plain_mark, text)
+
+
+def _plain_mark(match: re.Match[str]) -> str:
+    written = match[0]
+    if written[0] == '"':
+        return written
+    return f'"{written[1:-1]}"' if len(written) > 1 else written.translate(_PLAIN)
 
 
 def read_template_form(text: str, position: Position | None = None) -> Form:
     """Read the right side of a template as ``read_form`` does; it may also be one nonterminal, ``$action``."""
-    return _read_at(text, position, (Lambda, Application, Unknown, Nonterminal))
+    return _read_at(plain_marks(text), position, (Lambda, Application, Unknown, Nonterminal))
 
 
 def _read_at(text: str, position: Position | None, wanted: tuple[type, ...]) -> Form:
@@ -261,6 +281,7 @@ def read_spans(text: str) -> TermSpan:
     Raises:
         LanguageError: the text is not a form.
     """
+    text = plain_marks(text)
     start = start_rule(text)
     try:
         return _span(_tree_reader().parse(text, start=start))

@@ -6,7 +6,9 @@ from annotations.language.ontology.additions import Additions, additions_to, rea
 from annotations.language.ontology.competition_folder import (
     COMPETITION_CLASSES,
     COMPETITION_FILES,
-    place_in_folder,
+    choose_files,
+    guess_room,
+    may_be_in_folder,
     read_competition,
 )
 from annotations.language.ontology.entities import Entity, Ontology
@@ -33,9 +35,11 @@ __all__ = [
     "Entity",
     "Ontology",
     "additions_to",
+    "choose_files",
+    "guess_room",
     "lost_rows",
+    "may_be_in_folder",
     "ontology_problems",
-    "place_in_folder",
     "read_competition",
     "read_entities",
     "read_ontology",

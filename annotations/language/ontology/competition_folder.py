@@ -31,6 +31,10 @@ COMPETITION_CLASSES = frozenset(name for names in _LISTED.values() for name in n
 
 MOST_LINES = 20_000  # of a file
 MOST_CELLS = 20  # of a row that are told apart
+MOST_NAMES = 50  # of one cell
+MOST_PROBLEMS = 1_000  # unknown classes that are named
+MOST_NAMED = 6  # files that a hint names
+_ONE_FOLDER = "choose the folder of one competition"
 _PLACEMENT = re.compile(r"\( ?p ?\)", re.IGNORECASE)
 _PROSE = ("- ", "* ", "+ ", "![", "[", ">")  # begins of lists, pictures, links and quotations
 _NOTHING = ("", "-", "–", "—")
@@ -54,17 +58,85 @@ class Table:
     rows: list[list[Cell]] = field(default_factory=list)
 
 
-def place_in_folder(path: str) -> str:
-    """Return which of ``COMPETITION_FILES`` stands at ``path``, whatever folders it lies in; empty for none.
+@dataclass(frozen=True, slots=True)
+class FolderChoice:
+    """Which paths are read: one of ``COMPETITION_FILES`` → path. With ``arenas`` one of them has to be chosen first.
 
-    A name without a folder is enough: their names differ.
+    ``problems`` say which files are missing, or are there twice.
     """
-    *folders, name = path.lower().replace("\\", "/").split("/")
+
+    paths: Mapping[str, str]
+    arenas: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def may_be_in_folder(path: str) -> bool:
+    """Return whether a file may be one of ``COMPETITION_FILES``, or one of an arena such as ``objects_b.md``."""
+    return any(_arena_in(path, place) is not None for place in COMPETITION_FILES)
+
+
+def choose_files(paths: Iterable[str], arena: str = "", others: Iterable[str] = ()) -> FolderChoice:
+    """Find the files of a competition among ``paths``, whatever folders they lie in.
+
+    Where a file is there for several arenas only, that of ``arena`` is taken.
+
+    Args:
+        others: paths beside them, which a missing file may be called.
+    """
+    paths, others = list(paths), list(others)
+    chosen: dict[str, str] = {}
+    arenas: dict[str, None] = {}
+    problems: list[Problem] = []
     for place in COMPETITION_FILES:
-        folder, _, known = place.partition("/")
-        if name == known and (not folders or folders[-1] == folder):
-            return place
-    return ""
+        found: dict[str, list[str]] = defaultdict(list)
+        for path in paths:
+            if (label := _arena_in(path, place)) is not None:
+                found[label].append(path)
+        if len(found.get("", ())) > 1:  # told apart by the folders around them
+            for path in found.pop(""):
+                folders = path.lower().split("/")[:-1]
+                around = [each for each in folders if each != place.partition("/")[0]]
+                found[around[-1] if around else ""].append(path)
+        label = arena.lower() if arena.lower() in found else ""
+        if label not in found and len(found) == 1:
+            (label,) = found
+        if label in found:
+            chosen[place] = found[label][0]
+            problems += (
+                error_at(Position(path), f"there are two files {place}", _ONE_FOLDER)
+                for path in found[label][1:]
+            )
+        elif found and not arena:
+            arenas.update(dict.fromkeys(found))
+        else:
+            problems.append(_missing(place, list(found), [*paths, *others]))
+    if problems and not chosen and not arenas:
+        sentence = "none of the files of a competition is here"
+        problems = [error_at(Position(), sentence, f"they are {', '.join(COMPETITION_FILES)}")]
+    return FolderChoice(chosen, tuple(sorted(arenas)), tuple(problems))
+
+
+def _arena_in(path: str, place: str) -> str | None:
+    """Return the arena whose file ``place`` stands at ``path``, empty for that of all; None for another file."""
+    *folders, name = path.lower().split("/")
+    folder, _, known = place.partition("/")
+    stem, rest = known.removesuffix(".md"), name.removesuffix(".md")
+    if not name.endswith(".md") or (folders and folder not in folders[-2:]):
+        return None
+    if rest == stem:
+        return folders[-1] if folders and folders[-1] != folder else ""
+    begins = rest.startswith(stem) and rest[len(stem)] in "_-. ("
+    return rest[len(stem) :].strip("_-. ()") if begins else None
+
+
+def _missing(place: str, arenas: list[str], paths: list[str]) -> Problem:
+    folder = place.partition("/")[0]
+    beside = sorted(path for path in paths if f"/{folder}/" in f"/{path.lower()}") or sorted(paths)
+    names = ", ".join(path.rsplit("/", 1)[-1] for path in beside[:MOST_NAMED])
+    hint = f"beside it lie {names}" if names else "add it, or choose the folder around it"
+    if arenas:
+        hint = f"it is there for {', '.join(sorted(arenas)[:MOST_NAMED])}"
+    return error_at(Position(place), "the folder has no such file", hint)
 
 
 def read_competition(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Problem, ...]]:
@@ -74,10 +146,15 @@ def read_competition(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Proble
     location where its objects belong.
 
     Returns:
-        The rows, and every problem with its place; errors are returned, not raised.
+        The rows, and every problem with its place; errors are returned, not raised. Where a file is missing, nothing
+        but what is wrong with the tables of the others.
     """
     problems: list[Problem] = []
-    tables = {name: _tables(files, name, problems) for name in COMPETITION_FILES}
+    tables = {name: _tables(files, name, problems) for name in files}
+    if len(tables) < len(
+        COMPETITION_FILES
+    ):  # what else there is to say follows from what is missing
+        return Ontology(()), tuple(sorted(problems))
     names = list(_read_column(tables[NAMES], "name", ("name", "names"), problems))
     rooms = list(_read_column(tables[ROOMS], "room", ("name", "names", "room", "rooms"), problems))
     locations, belongs = _read_locations(tables[LOCATIONS], problems)
@@ -88,12 +165,7 @@ def read_competition(files: Mapping[str, bytes]) -> tuple[Ontology, tuple[Proble
 
 
 def _tables(files: Mapping[str, bytes], name: str, problems: list[Problem]) -> list[Table]:
-    """Return the tables of a file; none, and an error, where it is missing or cannot be read."""
-    if name not in files:
-        problems.append(
-            error_at(Position(name), "the folder has no such file", "add it, or choose its folder")
-        )
-        return []
+    """Return the tables of a file; none, and an error, where it cannot be read."""
     try:
         text, changes = read_text(files[name], name)
         problems += changes
@@ -236,7 +308,12 @@ def _read_locations(
             # "cooking table (p) cleaning supplies": somebody forgot the stroke between two cells.
             beside = [Cell(parts[1], place)] if is_placement and parts[1] else []
             for cell in (*row[at + 1 : at + 2], *beside):
-                for text in cell.text.split(","):
+                named = cell.text.split(",", MOST_NAMES)
+                if len(named) > MOST_NAMES:
+                    sentence = f"a cell has more than {MOST_NAMES} names"
+                    problems.append(error_at(cell.position, sentence, "name each class once"))
+                    continue
+                for text in named:
                     if text.strip() not in _NOTHING:
                         belongs[parts[0]].append(Cell(text.strip(), cell.position))
     if locations and not any(each.is_set("isPlacement") for each in locations):
@@ -325,14 +402,16 @@ def _places_of(
             names.setdefault(_fold(name), key)
     known = {each: key for name, key in names.items() for each in spellings(name)} | names
     places: dict[str, list[str]] = defaultdict(list)
+    unknown: set[str] = set()
     for location, cells in belongs.items():
         for cell in cells:
             said = _fold(cell.text)
             named = next((known[each] for each in (said, *spellings(said)) if each in known), None)
-            if named is None:
+            if named is None and len(unknown) < MOST_PROBLEMS and cell.text not in unknown:
+                unknown.add(cell.text)
                 sentence = f"no objects are of the class {cell.text}"
                 problems.append(warning_at(cell.position, sentence, "name a class of objects.md"))
-            elif location not in places[named]:
+            elif named is not None and location not in places[named]:
                 places[named].append(location)
     return places
 
@@ -340,3 +419,23 @@ def _places_of(
 def _fold(name: str) -> str:
     """Return a name without case and underscores."""
     return " ".join(name.casefold().replace("_", " ").split())
+
+
+def guess_room(location: str, rooms: Iterable[str]) -> str:
+    """Return the only room that the name of a location says, empty for none: a bedside table is in the bedroom."""
+    words = location.casefold().replace("_", " ").split()
+    said = f" {' '.join(words)} "
+    whole = [room for room in rooms if f" {' '.join(room.casefold().split())} " in said]
+    if whole:
+        longest = max(whole, key=len)
+        return longest if all(room in longest for room in whole) else ""
+    begun = []
+    for room in rooms:
+        stem = room.casefold().split()[0].removesuffix("room") if room.strip() else ""
+        if (
+            len(stem) > 2
+            and stem != room.casefold().strip()
+            and any(word.startswith(stem) for word in words)
+        ):
+            begun.append(room)
+    return begun[0] if len(begun) == 1 else ""

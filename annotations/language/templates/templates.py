@@ -16,6 +16,7 @@ from annotations.language.forms import (
     UNKNOWN,
     Application,
     Form,
+    plain_marks,
     read_template_form,
     to_template,
     walk,
@@ -242,7 +243,7 @@ def _symbols(text: str) -> Symbols:
 
 
 def _read_right(text: str, place: Position) -> _Right:
-    place, text = _behind_spaces(text, place), text.strip()
+    place, text = _behind_spaces(text, place), plain_marks(text.strip())
     return _Right(read_template_form(text, place), text, place)
 
 

@@ -9,7 +9,12 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.importing.competition_import import import_competition
-from annotations.management.base import RefusedReport, ReportingCommand, add_brings_back
+from annotations.management.base import (
+    RefusedReport,
+    ReportingCommand,
+    add_brings_back,
+    add_encoding,
+)
 
 
 class Command(ReportingCommand):
@@ -22,14 +27,32 @@ class Command(ReportingCommand):
     audited = "import files"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path)
+        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
         parser.add_argument("--world", required=True, help="made where there is none")
+        parser.add_argument(
+            "--arena",
+            default="",
+            help="whose files are taken where the folder has those of several",
+        )
         add_brings_back(parser)
+        add_encoding(parser)
 
     def report(
-        self, *, folder: Path, world: str, bring_back: bool, **options: Any
+        self,
+        *,
+        folder: Path,
+        world: str,
+        bring_back: bool,
+        encoding: str,
+        arena: str,
+        **options: Any,
     ) -> Mapping[str, Any]:
-        report = import_competition(world, folder, brings_back=bring_back)
+        choices = {"brings_back": bring_back, "encoding": encoding, "arena": arena}
+        report = import_competition(world, folder, **choices)
+        if report.is_waiting:
+            names = ", ".join(report.arenas)
+            sentence = f"The folder has files of several arenas: {names}. Choose one with --arena."
+            raise RefusedReport(report.as_json(), [f"{sentence} Nothing was imported."])
         if report.is_refused:
             raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()

@@ -29,7 +29,7 @@ class Command(ReportingCommand):
     audited = "import files"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path)
+        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
         parser.add_argument("--world", required=True, help="made where there is none")
         parser.add_argument(
             "--remove-missing",

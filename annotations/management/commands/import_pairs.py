@@ -30,7 +30,7 @@ class Command(ReportingCommand):
     audited = "import pairs"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path)
+        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
         parser.add_argument("--world", required=True, help="made where there is none")
         parser.add_argument("--name", required=True, help="what the splits are called")
         parser.add_argument(

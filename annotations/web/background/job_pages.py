@@ -84,7 +84,8 @@ def job_cancel(request: WorldRequest, job: Job) -> HttpResponse:
 def job_answer(request: WorldRequest, job: Job) -> HttpResponse:
     """Import the kept files after all, as the report says."""
     try:
-        return redirect("job", pk=answer_job(job, request.user).pk)
+        arena = request.POST.get("arena", "")
+        return redirect("job", pk=answer_job(job, request.user, arena).pk)
     except Refusal as error:
         messages.warning(request, str(error))
         return redirect("job", pk=job.pk)

@@ -19,6 +19,7 @@ from annotations.jobs.files import result_of
 from annotations.language.errors import Refusal
 from annotations.models import Duty, Job, World
 from annotations.people.allowances import may_take_long
+from annotations.web.rest.fields import Fields
 from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import Retrieved, RowsViewSet, SiteViewSet, Tagged
@@ -59,6 +60,12 @@ class JobQuery(django_filters.FilterSet):
     class Meta:
         model = Job
         fields = ["kind", "status"]
+
+
+class AnswerRequest(Fields):
+    """``arena`` is one of those that the report of the job offers, if it does."""
+
+    arena = serializers.CharField(required=False, max_length=60)
 
 
 class Cancelling(Tagged):
@@ -113,11 +120,13 @@ class JobViewSet(Cancelling, RowsViewSet):
         name = f"{self.world.name}-job-{job.pk}.jsonl"
         return FileResponse(file, as_attachment=True, filename=name, content_type=JSON_LINES)
 
-    @extend_schema(request=None, responses={202: JobSerializer})
+    @extend_schema(request=AnswerRequest, responses={202: JobSerializer})
     @action(detail=True, methods=["post"])
     def answer(self, request: ApiRequest, **kwargs: object) -> Response:
         """Imports the kept files after all, as the report says."""
-        return self.show(answer_job(self.get_object(), request.user), HTTPStatus.ACCEPTED)
+        job, sent = self.get_object(), self.read(AnswerRequest)
+        answered = answer_job(job, request.user, sent.get("arena", ""))
+        return self.show(answered, HTTPStatus.ACCEPTED)
 
 
 class SiteJobViewSet(Cancelling, Retrieved, SiteViewSet):

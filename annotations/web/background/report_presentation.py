@@ -46,7 +46,10 @@ IMPORT_PAGES = {
     JobKind.IMPORT_PAIRS: "import_pairs",
 }
 # What asks whether an import may go on.
-QUESTIONS = {JobKind.IMPORT_RESULTS: "annotations/campaigns/_results_question.html"}
+QUESTIONS = {
+    JobKind.IMPORT_RESULTS: "annotations/campaigns/_results_question.html",
+    JobKind.IMPORT_COMPETITION: "annotations/background/_arena_question.html",
+}
 REMOVAL_QUESTION = "annotations/background/_removal_question.html"
 
 

@@ -24,6 +24,7 @@ from annotations.utterances.utterance_uploads import (
     NotNow,
     Preview,
     ReadingChoices,
+    content_of,
     count_labelled,
     preview,
     redo,
@@ -186,7 +187,6 @@ class UploadViewSet(RowsViewSet):
         if sent["as_labels"] and not self.world.allows(request.user, Duty.MANAGE):
             raise PermissionDenied("Only admins of this world store forms as labels.")
         file = sent.get("file")
-        data = file.read() if file else sent["text"].encode("utf-8", "replace")
         name = normalise_line(file.name) if file else ""
         chosen = ReadingChoices(
             sent.get("format", ""),
@@ -196,6 +196,7 @@ class UploadViewSet(RowsViewSet):
             sent["as_labels"],
         )
         try:
+            data = content_of(file) if file else sent["text"].encode("utf-8", "replace")
             shown = preview(self.world, data, name, chosen)
         except LanguageError as error:
             raise refusal_of_text(error, "file" if file else "text") from error

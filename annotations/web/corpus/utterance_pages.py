@@ -22,7 +22,13 @@ from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.utterances.upload_reading import MOST_BYTES, UploadFormat
 from annotations.utterances.utterance_deletion import delete_utterances, restore_utterances
-from annotations.utterances.utterance_uploads import Preview, keep_waiting, preview, store
+from annotations.utterances.utterance_uploads import (
+    Preview,
+    content_of,
+    keep_waiting,
+    preview,
+    store,
+)
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted
@@ -76,10 +82,9 @@ class UtterancesForm(forms.Form):
 
     @property
     def data_sent(self) -> bytes:
-        """What was pasted, or what the file holds."""
+        """What was pasted, or what the file holds. Raises LanguageError for an archive without one file."""
         file = self.cleaned_data["file"]
-        data: bytes = file.read() if file else self.cleaned_data["text"].encode()
-        return data
+        return content_of(file) if file else self.cleaned_data["text"].encode()
 
     @property
     def file_name(self) -> str:
@@ -113,8 +118,9 @@ def utterances_new(request: WorldRequest, world: World) -> HttpResponse:
     form = UtterancesForm(posted(request), request.FILES or None)
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
-        data, name = form.data_sent, form.file_name
+        name = form.file_name
         try:
+            data = form.data_sent
             shown = preview(world, data, name)
         except LanguageError as error:
             form.add_error("file" if name else "text", str(error))

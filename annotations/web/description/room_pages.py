@@ -11,6 +11,7 @@ from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, change_many
 from annotations.language.english import say_count
+from annotations.language.ontology import guess_room
 from annotations.models import Duty, Entity, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.forms import posted
@@ -30,11 +31,13 @@ class RoomsForm(forms.Form):
         self.rooms = rooms
         for name, row in self.locations.items():
             room = row.attributes.get("room", "")
+            guessed = "" if room else guess_room(row.text, rooms)
             known = [*rooms, *([room] if room and room not in rooms else [])]
             self.fields[name] = forms.ChoiceField(
                 label=row.text,
                 required=False,
-                initial=room,
+                initial=room or guessed,
+                help_text="guessed from its name" if guessed else "",
                 choices=[("", "no room"), *((each, each) for each in known)],
             )
 

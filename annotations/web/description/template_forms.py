@@ -14,6 +14,7 @@ from annotations.generation.world_consequences import (
     WorldConsequences,
     consequences,
 )
+from annotations.language.forms import plain_marks
 from annotations.language.limits import MAX_FORM, MAX_PATTERN
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
@@ -53,6 +54,9 @@ class TemplateForm(forms.Form):
         )
         for name, example in example_template(world).items():
             self.fields[name].widget.attrs["placeholder"] = example
+
+    def clean_form(self) -> str:
+        return plain_marks(self.cleaned_data["form"])
 
     def clean(self) -> dict[str, Any]:
         cleaned = self.cleaned_data

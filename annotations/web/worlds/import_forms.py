@@ -8,15 +8,31 @@ from django import forms
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.exporting.generator_export import complete
+from annotations.importing.gathered_files import gather
 from annotations.importing.pair_files import Notation
-from annotations.importing.uploaded_files import files_of
 from annotations.language.decoding import ENCODINGS, UTF8
 from annotations.language.errors import LanguageError
 from annotations.models import World
 
 
 class ManyFiles(forms.ClearableFileInput):
+    """Takes several files, or a folder: ``paths`` beside them say where each lies in it, in the same order."""
+
     allow_multiple_selected = True
+
+    def __init__(self) -> None:
+        super().__init__(attrs={"data-folder": ""})
+
+    def value_from_datadict(self, data: Any, files: Any, name: str) -> Any:
+        sent = super().value_from_datadict(data, files, name)
+        paths = data.getlist("paths") if hasattr(data, "getlist") else data.get("paths", ())
+        if isinstance(sent, list) and len(sent) == len(paths):
+            for upload, path in zip(sent, paths, strict=True):
+                upload.sent_path = str(path)[:LONGEST_PATH]
+        return sent
+
+
+LONGEST_PATH = 1_000
 
 
 class FilesField(forms.FileField):
@@ -62,7 +78,7 @@ class EncodingField(forms.ChoiceField):
 class FilesForm(forms.Form):
     """Files to import. The choices that most imports leave as they are come after the others, folded."""
 
-    FOLDED = ("keeps_others", "encoding", "brings_back")
+    FOLDED = ("keeps_others", "encoding", "arena", "brings_back")
 
     @property
     def first_fields(self) -> list[forms.BoundField]:
@@ -79,15 +95,15 @@ class FilesForm(forms.Form):
 
 
 class PairsForm(FilesForm):
-    """The pair files of a published corpus, in one archive."""
+    """The pair files of a published corpus."""
 
     name = forms.SlugField(
         max_length=60, help_text="The splits are named after it: name-command, name-logical_form."
     )
-    archive = forms.FileField(
-        allow_empty_file=True,
-        help_text="A zip archive with any of the folders gen, para, gen_logical and para_logical "
-        "(train.txt, val.txt, test.txt in each) and paraphrasings.txt.",
+    archive = FilesField(
+        label="Files",
+        help_text="A folder or one archive (.zip, .tar.gz) with any of the folders gen, para, gen_logical and "
+        "para_logical (train.txt, val.txt, test.txt in each) and paraphrasings.txt.",
     )
     notation = forms.ChoiceField(
         required=False,
@@ -98,7 +114,7 @@ class PairsForm(FilesForm):
                 "λ-calculus of other corpora: (lambda $0 e (flight $0)), (argmax $0 …",
             ),
         ],
-        help_text="For another corpus the archive holds train, dev and test as .txt or .tsv. Forms that cannot be "
+        help_text="For another corpus the folder holds train, dev and test as .txt or .tsv. Forms that cannot be "
         "read are left out, and the report counts them by reason.",
     )
     encoding = EncodingField()
@@ -106,12 +122,19 @@ class PairsForm(FilesForm):
 
 
 class CompetitionForm(FilesForm):
-    """The files of a competition's folder, as they are or in one zip archive."""
+    """The files of a competition's folder, as they are or in one archive."""
 
     files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent
         label="Files",
-        help_text="names.md, room_names.md, location_names.md and objects.md, or one zip archive with the folder. "
-        "Other files in it are ignored.",
+        help_text="The folder with names.md, room_names.md, location_names.md and objects.md, or one archive (.zip, "
+        ".tar.gz) with it. Other files in it are ignored.",
+    )
+    encoding = EncodingField()
+    arena = forms.CharField(
+        required=False,
+        max_length=60,
+        help_text="Where the folder has files of several, such as objects_a.md and objects_b.md. Without it you are "
+        "asked.",
     )
     brings_back = BringsBackField()
 
@@ -130,12 +153,12 @@ class WorldArchiveForm(forms.Form):
 
 
 class ImportForm(FilesForm):
-    """The files of a generator, as they are or in one zip archive."""
+    """The files of a generator, as they are or in one archive."""
 
     files = FilesField(  # type: ignore[assignment]  # of the same name as those that were sent
         label="Files",
         help_text="The grammar, template and ontology files of one generator: choose all of them, "
-        "or one zip archive with them.",
+        "their folder, or one archive (.zip, .tar.gz).",
     )
     keeps_others = forms.BooleanField(
         label="Keep what these files do not have",
@@ -151,7 +174,7 @@ def uploads_of(world: World, form: ImportForm) -> list[Any]:
     sent: list[Any] = form.cleaned_data["files"]
     if not form.cleaned_data["keeps_others"]:
         return sent
-    gathered = files_of(sent, form.cleaned_data["encoding"])
+    gathered = gather(sent, form.cleaned_data["encoding"])
     for problem in gathered.problems:
         if problem.is_error:
             raise LanguageError(problem.message, problem.position, problem.hint)

@@ -56,9 +56,9 @@ def import_competition_files(request: WorldRequest, world: World) -> HttpRespons
     """Import the folder of a competition, all of it or nothing."""
     form = CompetitionForm(posted(request), request.FILES or None)
     if form.is_bound and form.is_valid():
-        files, brings_back = form.cleaned_data["files"], form.cleaned_data["brings_back"]
+        values = form.cleaned_data
         try:
-            started = start_competition_import(world, files, request.user, brings_back)
+            started = start_competition_import(world, values.pop("files"), request.user, **values)
         except LanguageError as error:
             form.add_error("files", str(error))
         else:

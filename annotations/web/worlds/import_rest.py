@@ -72,20 +72,33 @@ class EncodingChoice(serializers.ChoiceField):
         )
 
 
-class ImportedFiles(serializers.Serializer[Any]):
-    """The files of a generator, as they are or in one zip archive."""
+class SentFilesField(serializers.ListField):
+    """Files as they are, or one archive (.zip, .tar, .tar.gz)."""
 
-    files = serializers.ListField(child=serializers.FileField(allow_empty_file=True), min_length=1)
+    def __init__(self) -> None:
+        super().__init__(child=serializers.FileField(allow_empty_file=True), min_length=1)
+
+
+class WithPaths(serializers.Serializer[Any]):
+    """``paths`` say where each file lies in its folder, in the order of the files; without them names say it."""
+
+    paths = serializers.ListField(child=serializers.CharField(), required=False)
+
+
+class ImportedFiles(WithPaths):
+    """The files of a generator, as they are or in one archive."""
+
+    files = SentFilesField()
     keeps_others = serializers.BooleanField(default=False)
     encoding = EncodingChoice()
     brings_back = serializers.BooleanField(default=False)
 
 
-class ImportedPairs(serializers.Serializer[Any]):
-    """The pair files of a published corpus in one zip archive; splits are named after ``name``."""
+class ImportedPairs(WithPaths):
+    """The pair files of a published corpus, with their ``paths`` or in one archive; splits are named after ``name``."""
 
     name = serializers.SlugField(max_length=60)
-    archive = serializers.FileField()
+    archive = SentFilesField()
     notation = serializers.ChoiceField(
         choices=[Notation.LAMBDA], required=False, help_text="Of another corpus."
     )
@@ -93,10 +106,13 @@ class ImportedPairs(serializers.Serializer[Any]):
     brings_back = serializers.BooleanField(default=False)
 
 
-class ImportedCompetition(serializers.Serializer[Any]):
-    """The files of a competition's folder, as they are or in one zip archive."""
+class ImportedCompetition(WithPaths):
+    """The files of a competition's folder, as they are or in one archive. ``arena``: whose files are taken where it has
+    those of several; without it the answer is a job that asks."""
 
-    files = serializers.ListField(child=serializers.FileField(allow_empty_file=True), min_length=1)
+    files = SentFilesField()
+    encoding = EncodingChoice()
+    arena = serializers.CharField(required=False, max_length=60)
     brings_back = serializers.BooleanField(default=False)
 
 
@@ -190,8 +206,10 @@ class ImportCompetition(Doing, WorldRoute):
     @once
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.valid(CompetitionForm(self.sent, request.FILES)).cleaned_data
-        values = sent["files"], request.user, sent["brings_back"]
-        return self.answer(lambda: start_competition_import(self.world, *values))
+        files = sent.pop("files")
+        return self.answer(
+            lambda: start_competition_import(self.world, files, request.user, **sent)
+        )
 
 
 @takes_files

@@ -8,7 +8,7 @@ import pytest
 
 from annotations.exporting.split_export import FIELDS, export_lines, export_split
 from annotations.generation.generating import generate_pairs
-from annotations.importing.pair_files import read_pair_folder
+from annotations.importing.pair_files import gather_pairs, read_pair_folder
 from annotations.language.corpus import Criterion
 from annotations.language.errors import Refusal
 from annotations.models.splits import Source
@@ -71,7 +71,7 @@ def test_pair_files_of_every_source_are_read_as_its_own(tiny_world, tmp_path, so
     split = freeze_split(tiny_world, "whole", criterion, proportions=(1, 0, 0))
     split.examples.update(source=source)
     export_split(split, "txt", tmp_path)
-    read = read_pair_folder(tmp_path)
+    read = read_pair_folder(gather_pairs(tmp_path))
     assert {key: len(pairs) for key, pairs in read.pairs.items()} == {
         (criterion, source, "train"): 3
     }

@@ -119,10 +119,13 @@ def test_nothing_is_stored_where_a_file_has_an_error(world, folder, tmp_path):
     assert not World.objects.filter(name="nowhere").exists()
 
 
-def test_two_competitions_at_once_are_refused(world, shared_data):
+def test_of_several_competitions_one_is_chosen(world, shared_data, folder):
     report = import_competition("home", shared_data / "competition-real")
-    assert len(report.errors) == 3 * 4  # the files of the three others
+    assert report.is_waiting and "incheon2026" in report.arenas and len(report.arenas) == 4
     assert not entities()
+    import_competition("home", shared_data / "competition-real", arena="Incheon2026")
+    chosen = entities()
+    assert import_competition("home", folder).changes.is_none and entities() == chosen
 
 
 def test_the_command_says_what_it_did(db, folder, tmp_path):

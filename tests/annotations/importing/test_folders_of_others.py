@@ -9,9 +9,9 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.exporting.generator_export import generator_files
-from annotations.importing.gathered_files import GatheredFiles, flatten
+from annotations.importing.gathered_files import GatheredFiles
+from annotations.importing.gathered_files import gather as files_of
 from annotations.importing.generator_import import import_generator
-from annotations.importing.uploaded_files import files_of
 from annotations.language.errors import LanguageError
 from annotations.models import Entity, Production, SemanticTemplate, World
 from annotations.rows.from_rows import task_categories
@@ -49,7 +49,7 @@ WAYS = {"a folder": as_folder, "an archive": as_archive}
 
 def test_names_of_files_are_normalised_as_the_imports_of_them_are(db):
     files = {"x/main.txt": "; import caf\u00e9.txt\n$Main = $x", "x/cafe\u0301.txt": "$x = go"}
-    gathered = flatten({path: text.encode() for path, text in files.items()})
+    gathered = files_of({path: text.encode() for path, text in files.items()})
     assert set(gathered.files) == {"main.txt", "caf\u00e9.txt"}
     assert not import_generator("theirs", gathered).errors
 
@@ -165,11 +165,11 @@ def test_two_spellings_of_one_name_are_an_error_that_names_both(db):
 
 def test_of_two_files_with_one_name_the_nearer_is_taken_and_equal_ones_are_one():
     near, far = b"<categories/>", OBJECTS.encode()
-    gathered = flatten({"x/y/Objects.xml": far, "x/objects.xml": near, "x/z/OBJECTS.XML": near})
+    gathered = files_of({"x/y/Objects.xml": far, "x/objects.xml": near, "x/z/OBJECTS.XML": near})
     assert gathered.files == {"objects.xml": near}
     assert places(gathered.problems) == {("x/y/Objects.xml", 1)}
     assert not any(problem.is_error for problem in gathered.problems)
-    (problem,) = flatten({"a/objects.xml": near, "b/Objects.xml": far}).problems
+    (problem,) = files_of({"a/objects.xml": near, "b/Objects.xml": far}).problems
     assert problem.is_error and "a/objects.xml" in problem.message
 
 

@@ -8,7 +8,7 @@ import annotations
 from annotations.exporting.split_export import export_split
 from annotations.generation.generating import generate_pairs
 from annotations.importing.generator_import import import_generator
-from annotations.importing.pair_files import read_pair_folder
+from annotations.importing.pair_files import gather_pairs, read_pair_folder
 from annotations.importing.pair_import import import_pairs
 from annotations.models import Paraphrase, Split, World
 from tests.annotations.rows_of import counts
@@ -194,7 +194,7 @@ def test_a_file_that_is_too_large_is_refused_whole(world, folder):
 
 
 def test_forms_that_are_written_alike_are_kept_once(folder):
-    pairs = read_pair_folder(folder).pairs["command", "paraphrased", "train"]
+    pairs = read_pair_folder(gather_pairs(folder)).pairs["command", "paraphrased", "train"]
     assert len(pairs) == 2 and pairs[0].form is pairs[1].form
     assert pairs[0].position != pairs[1].position
 

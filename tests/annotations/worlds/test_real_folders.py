@@ -10,7 +10,7 @@ import pytest
 
 from annotations.checking.entity_check import entity_problems
 from annotations.language.english import article, plural, spellings
-from annotations.language.ontology import Ontology, place_in_folder, read_competition
+from annotations.language.ontology import Ontology, choose_files, read_competition
 from annotations.language.plans import Lookup, Named
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.oracle import GrammarOracle
@@ -41,11 +41,8 @@ BINS = ("trash", "garbage", "rubbish", "bin", "wastebasket")
 
 @cache
 def entities_of(folder: Path) -> Ontology:
-    files = {
-        place: path.read_bytes()
-        for path in folder.rglob("*.md")
-        if (place := place_in_folder(path.relative_to(folder).as_posix()))
-    }
+    paths = choose_files(path.relative_to(folder).as_posix() for path in folder.rglob("*.md")).paths
+    files = {place: (folder / path).read_bytes() for place, path in paths.items()}
     kept = [each for each in ontology().entities if each.entity_class not in NAMED]
     return replace(ontology(), entities=(*read_competition(files)[0].entities, *kept))
 

@@ -278,17 +278,18 @@ def test_a_missing_predicate_is_declared_as_the_form_uses_it(
         ("(say\u00a0“hello\u2009there\u200b”)", '(say "hello there")'),
     ],
 )
-def test_one_key_repairs_curly_quotes_and_odd_blanks(
+def test_curly_quotes_and_odd_blanks_are_read_as_plain_ones(
     typed, repaired, page_of, live_server, annotator
 ):
     page = page_of(annotator)
     open_editor(page, live_server.url)
     write(page, "go to the\u00a0{room}", typed)
     report = page.locator(".editor-report").nth(1)
-    expect(report.get_by_role("button", name="Write plain quotation marks")).to_be_visible()
-    page.get_by_role("textbox", name="Logical form").press("Control+.")
-    assert page.locator("#id_form").input_value() == repaired
-    assert page.locator("#id_pattern").input_value() == "go to the {room}"
+    expect(report.get_by_text("not allowed")).to_have_count(0)
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.wait_for_url(lambda url: "new" not in url)
+    saved = SemanticTemplate.objects.get(pattern="go to the {room}")
+    assert saved.form == repaired
 
 
 def test_the_help_stays_closed_once_it_is_closed(page_of, live_server, annotator):

@@ -66,8 +66,6 @@ def offered(sides: Sides):
         (0, "(bring (is_a $1 $object) (at $1 {placement 1}))", "Put λ$1 around", FORMS[0]),
         (1, "(find (λ$1:e (person $2) (at $1 {room})))", "Write $1 for $2", FORMS[1]),
         (1, "(find (λ$1:e (person $1) (at $1 {room}))))", "Remove the )", FORMS[1]),
-        (2, "(go “kitchen”)", "Write plain quotation marks", FORMS[2]),
-        (2, "(go ‘kitchen’)", "Write plain quotation marks", FORMS[2]),
         (2, "(go kitchen)", 'Quote it: "kitchen"', FORMS[2]),
         (2, '(go "kitchen)', 'Close it: "kitchen"', FORMS[2]),
         (3, "(bring $object)", "(is_a $1 $object)", "(bring (λ$1:e (is_a $1 $object)))"),

@@ -13,7 +13,8 @@ from annotations.language.ontology.competition_folder import (
     NAMES,
     OBJECTS,
     ROOMS,
-    place_in_folder,
+    choose_files,
+    guess_room,
     read_competition,
 )
 
@@ -187,7 +188,15 @@ BROKEN = {
     "a million rows": ({"names": LONG}, NAMES, 1),
     "a script": ({"names": "| Names |\n| - |\n| <script>x</script> |"}, NAMES, 3),
     "a long name": ({"rooms": "| Name |\n| - |\n| " + "k" * 501 + " |"}, ROOMS, 3),
-    "no file": ({"rooms": None}, ROOMS, 1),
+    "three million names in a cell": (
+        {
+            "locations": "| No | Name | C |\n| - | - | - |\n| 1 | sofa (p) | "
+            + "a," * 3_000_000
+            + " |"
+        },
+        LOCATIONS,
+        3,
+    ),
     "a quotation mark": ({"rooms": '| Name |\n| - |\n| the "room" |'}, ROOMS, 3),
     "a million strokes": ({"names": "| Names |\n| - |\n" + "|" * 1_000_000}, NAMES, 3),
 }
@@ -206,9 +215,10 @@ def test_broken_folders_are_refused_with_the_place(name):
 @pytest.mark.parametrize(
     ("path", "place"),
     [
+        ("names.md", NAMES),
         ("names/names.md", NAMES),
         ("RoboCup2026/Maps/Location_Names.md", LOCATIONS),
-        ("a\\objects\\objects.md", OBJECTS),
+        ("a/objects/objects.md", OBJECTS),
         ("objects/test_objects.md", ""),
         ("objects/test.md", ""),
         ("names/drinks.md", ""),
@@ -217,4 +227,59 @@ def test_broken_folders_are_refused_with_the_place(name):
     ],
 )
 def test_other_files_are_no_part_of_the_language(path, place):
-    assert place_in_folder(path) == place
+    assert choose_files([path]).paths == ({place: path} if place else {})
+
+
+ARENAS = [
+    "x/names/names.md",
+    *(f"x/maps/{kind}_names_{arena}.md" for kind in ("room", "location") for arena in "ab"),
+    *("x/objects/objects_a.md", "x/objects/Objects-B.md", "x/README.md"),
+]
+
+
+def test_of_two_arenas_one_is_chosen_and_what_they_share_is_in_both():
+    assert choose_files(ARENAS).arenas == ("a", "b")
+    for arena in ("a", "B"):
+        choice = choose_files(ARENAS, arena)
+        assert set(choice.paths) == set(COMPETITION_FILES) and not choice.problems
+        assert choice.paths[NAMES] == "x/names/names.md"
+        assert choice.paths[OBJECTS].lower()[-4] == arena.lower()
+    for folder in ("{}/maps", "maps/{}"):
+        paths = [f"{folder.format(arena)}/room_names.md" for arena in "xy"]
+        assert choose_files(paths).arenas == ("x", "y")
+
+
+def test_a_file_for_all_is_taken_before_those_of_arenas():
+    assert choose_files([*ARENAS, "x/objects/objects.md"]).paths[OBJECTS] == "x/objects/objects.md"
+
+
+@pytest.mark.parametrize("lost", COMPETITION_FILES)
+def test_a_missing_file_is_one_problem_that_names_what_lies_beside_it(lost):
+    beside = f"{lost.split('/')[0]}/places.md"
+    paths = [each for each in COMPETITION_FILES if each != lost]
+    choice = choose_files(paths, others=[beside])
+    (problem,) = choice.problems
+    assert problem.position.source == lost and "places.md" in problem.hint
+    _, further = read_competition({each: FOLDER[each].encode() for each in paths})
+    assert further == ()
+
+
+@pytest.mark.parametrize(
+    ("location", "room"),
+    [
+        ("kitchen trash bin", "kitchen"),
+        ("bedside table", "bedroom"),
+        ("Living Room shelf", "living room"),
+        ("living table", "living room"),
+        ("bathtub", "bathroom"),
+        ("guest bedroom closet", "guest bedroom"),
+        ("sofa", ""),
+        ("roomy shelf", ""),
+        ("kitchen bedroom door", ""),
+    ],
+)
+def test_a_room_is_guessed_from_the_name_of_a_location(location, room):
+    rooms = ["kitchen", "living room", "bathroom", "bedroom"]
+    if room not in ("", *rooms):
+        rooms.append(room)
+    assert guess_room(location, rooms) == room
