@@ -193,6 +193,6 @@ def test_the_id_of_somebody_is_read_under_the_name_that_the_campaign_has():
     text = table(head=["rid" if name == "WorkerId" else name for name in HEAD])
     assert read(text).problems[0].is_error
     results = read_crowd_results(text, "results.csv", 500, "RID")
-    assert [(each.market, each.worker) for each in results.assignments][0] == ("RID", "W1")
+    assert (results.assignments[0].market, results.assignments[0].worker) == ("RID", "W1")
     participants = table(head=["Participant id" if name == "WorkerId" else name for name in HEAD])
     assert read(participants).assignments[0].market == "PROLIFIC_PID"
