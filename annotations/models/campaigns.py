@@ -116,7 +116,7 @@ class Campaign(models.Model):
     ``check_every`` plants a check among so many prompts (0: none). It ends when it is closed, at ``ends_at``,
     or with ``most_submissions``. At most ``most_per_hour`` tasks are begun by the link. ``price`` is what a task costs,
     in ``currency``. ``run_by``, ``contact`` and ``minutes`` stand beside the consent. A crowd market sends who comes
-    and for what as ``worker_parameter`` and ``assignment_parameter``; where they are empty, by the names that are known.
+    and for what as ``worker_parameter`` and ``assignment_parameter``; if these are empty, by known names.
     Its pages may frame this one if they are of ``frame_origins``, separated by blanks. Who answers no to
     ``screening_question`` gets ``screened_out_code`` and ``screened_out_url``, and no task.
     ``key`` is the secret part of the link; it is empty where the link was revoked. ``version``
