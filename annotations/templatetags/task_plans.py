@@ -25,6 +25,12 @@ def call(step: Mapping[str, Any]) -> str:
 
 
 @register.filter
+def waiting_with(plan: Mapping[str, Any], number: int) -> list[dict[str, Any]]:
+    """Return what of a plan is not resolved and waits with step ``number``; with 0, what no step waits for."""
+    return [each for each in plan["unresolved"] if number in (each["steps"] or [0])]
+
+
+@register.filter
 def as_json(value: Mapping[str, Any]) -> str:
     """Write plain data as JSON that people can read."""
     return json.dumps(value, ensure_ascii=False, indent=2)

@@ -19,22 +19,29 @@ from parser_service.serving.preparing import WorldLanguage
 MOST_CHOICES = 20
 
 
-def plan_of(state: DialogueState, language: WorldLanguage) -> Plan:
+def plan_of(row: Dialogue, language: WorldLanguage) -> Plan:
     """Return the plan of a dialogue as far as it has come."""
+    state = state_of(row)
     return make_plan(
-        state.form, language.ontology, language.predicates, language.action_names, state.slots
+        state.form,
+        language.ontology,
+        language.predicates,
+        language.action_names,
+        state.slots,
+        utterance=row.utterance,
     )
 
 
-def task_plan_in(state: DialogueState, language: WorldLanguage) -> TaskPlan:
+def task_plan_in(row: Dialogue, language: WorldLanguage) -> TaskPlan:
     """Return the same in the primitives of the robot."""
-    return task_plan_of(state.form, (), language, slots=state.slots)
+    state = state_of(row)
+    return task_plan_of(state.form, language, state.slots, row.utterance)
 
 
 def as_json(row: Dialogue) -> dict[str, Any]:
     """Return a dialogue with what it asks, its form so far and its plan."""
     state, language = state_of(row), WorldLanguage.of(row.world)
-    task_plan = task_plan_in(state, language)
+    task_plan = task_plan_in(row, language)
     return {
         "id": row.pk,
         "utterance": row.utterance,
@@ -51,7 +58,7 @@ def as_json(row: Dialogue) -> dict[str, Any]:
             language.ontology.classes,
             language.ontology.class_of_text,
         ),
-        "plan": plan_of(state, language).as_json(),
+        "plan": plan_of(row, language).as_json(),
         "task_plan": task_plan.as_json(),
         "spoken": spoken(task_plan),
         "offers": [asdict(offer) for offer in state.offers],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from annotations.language.english import MOST_STAND_INS, stand_in
-from annotations.language.forms import Form
+from annotations.language.forms import Form, Unknown
 from annotations.language.grounding import (
     Anonymized,
     Deanonymized,
@@ -17,7 +17,6 @@ from annotations.language.grounding import (
     resolve_slots,
     with_values,
 )
-from annotations.language.plans import doubts_about
 from annotations.language.predicates import ask_for
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.outlines import (
@@ -56,24 +55,37 @@ class AnswerWriter:
         self._outlines = Outlines(language)
 
     def readings(
-        self, heard: Anonymized, candidates: Sequence[Candidate], score_kind: str | None
+        self,
+        heard: Anonymized,
+        candidates: Sequence[Candidate],
+        score_kind: str | None,
+        utterance: str | None = None,
     ) -> list[Reading[str]]:
-        """Return the readings of the candidates for what was heard, best first; each with its answer as JSON."""
-        said = UtteranceMentions(heard, self.language.ontology)
-        return best_first([self._write(each, said) for each in candidates], heard, score_kind)
+        """Return the readings of the candidates for what was heard, best first; each with its answer as JSON.
 
-    def _write(self, candidate: Candidate, heard: UtteranceMentions) -> Reading[str]:
+        ``utterance`` is what was said, where something else was heard.
+        """
+        mentions = UtteranceMentions(heard, self.language.ontology)
+        said = heard.original if utterance is None else utterance
+        readings = [self._write(each, mentions, said) for each in candidates]
+        return best_first(readings, heard, score_kind)
+
+    def _write(
+        self, candidate: Candidate, heard: UtteranceMentions, utterance: str
+    ) -> Reading[str]:
         form = form_of(candidate.form)
         if form is None:
             answer = ParsedCandidate(candidate.form, score_of(candidate))
             return Reading(candidate, as_json(answer.as_json()))
         slots = self._slots(candidate, heard)
-        written = self._fill(candidate, form, slots)
-        return self._write_anew(candidate, form, slots) if written is None else written
+        written = self._fill(candidate, form, slots, utterance)
+        return self._write_anew(candidate, form, slots, utterance) if written is None else written
 
-    def _write_anew(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str]:
+    def _write_anew(
+        self, candidate: Candidate, form: Form, slots: Slots, utterance: str
+    ) -> Reading[str]:
         given, language = fill_all(form, slots), self.language
-        answer = answer_with(candidate, given, language, language.lookup)
+        answer = answer_with(candidate, given, language, language.lookup, utterance)
         return Reading(candidate, as_json(answer.as_json()), slots, answer.executable_plans)
 
     def _slots(self, candidate: Candidate, heard: UtteranceMentions) -> Slots:
@@ -83,10 +95,14 @@ class AnswerWriter:
         resolved = resolve_slots(slots, heard, language.ontology, language.evidence)
         return with_values(resolved, candidate.values)
 
-    def _fill(self, candidate: Candidate, form: Form, slots: Slots) -> Reading[str] | None:
+    def _fill(
+        self, candidate: Candidate, form: Form, slots: Slots, utterance: str
+    ) -> Reading[str] | None:
         """Return the outline with its entities; None where it would say something else."""
-        if not all(slot.filler is not None or is_asked_plainly(slot) for slot in slots):
-            return None  # the plan asks for it in words of this utterance
+        if isinstance(form, Unknown):
+            return None  # the plan asks about this utterance
+        if not all(slot.value is not None or is_asked_plainly(slot) for slot in slots):
+            return None  # the plan asks for it in words of this utterance, or names a guess
         put_in = [(slot.path, value) for slot in slots if (value := slot.filler) is not None]
         if len({value.casefold() for _, value in put_in}) < len(put_in):
             return None  # who is named twice is one person
@@ -115,7 +131,7 @@ class AnswerWriter:
         )
         written = Reading(candidate, filled_in, slots, executable_plans)
         if outline.is_right is None:
-            outline.is_right = written == self._write_anew(candidate, form, slots)
+            outline.is_right = written == self._write_anew(candidate, form, slots, utterance)
         return written if outline.is_right else None
 
     def _own_values(
@@ -153,11 +169,8 @@ class AnswerWriter:
             )
 
         given = Deanonymized(form, slots)
-        found = doubts_about(slots)
-        doubts = [each.as_json() for each in found]
         put_in = tuple(each.text for each in texts)
-        task_plan = self._outlines.task_plan(candidate.form, paths, put_in, found)
-        is_executable = outline.is_executable and not doubts
+        task_plan = self._outlines.task_plan(candidate.form, paths, put_in)
         values = {
             "task_plan": task_plan.text,
             "spoken": task_plan.spoken,
@@ -165,7 +178,5 @@ class AnswerWriter:
             "values": as_json(list(candidate.values)),
             "open_slots": as_json(list(questions_of(given, self.language, asked_for))),
             "warnings": as_json(warnings_about(given, self.language.ontology)),
-            "is_executable": as_json(is_executable),
-            "problems": as_json([*doubts, *outline.problems]),
         }
-        return values, is_executable + task_plan.is_executable
+        return values, outline.is_executable + task_plan.is_executable

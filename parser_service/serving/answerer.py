@@ -254,6 +254,9 @@ class Answerer:
         is_cut = (
             len(texts) > 1 if self.oracle is None else all(each.is_understood for each in pieces)
         )
+        if self.learned is None and not is_cut:  # no other part understands the rest
+            is_cut = len(texts) > 1 and any(each.is_understood for each in pieces)
+            is_cut = is_cut and not objections(self._anonymize(given.utterance))
         if not is_cut:
             return given
         alone = self._ask_oracle(texts, beam)
@@ -266,14 +269,16 @@ class Answerer:
 
     def _cut_again(self, answer: Answer, beam: int) -> Answer:
         """Return the answer with one for each command, where both parts together understand some of them and neither
-        understands all together, or the learned part leaves something out."""
+        is sure of all together, or the learned part leaves something out."""
         given, evidence = answer.given, answer.about.evidence
         if given.pieces or self.learned is None or given.part is not self.learned:
             return answer
         if evidence is not None and not (evidence.left_out or evidence.unknown_words):
             return answer
+        if answer.about.objections:
+            return answer
         pieces = pieces_of(given.utterance, self._grammar, self._judge)
-        is_better = all if evidence else any
+        is_better = any if answer.is_unknown else all
         if len(pieces) < 2 or not is_better(each.is_understood for each in pieces):
             return answer
         alone = self._ask_oracle([each.text for each in pieces], beam)
@@ -298,6 +303,9 @@ class Answerer:
             for each in answers
         ]
 
+    def _anonymize(self, text: str) -> Anonymized:
+        return self.writer.language.anonymizer.anonymize(text)
+
     def heard_nothing(self) -> Answer:
         """Return what there is to write where nothing was said: no candidate, without asking any part."""
         return self.judge(PartAnswer("", "", self.oracle or self.learned))
@@ -313,9 +321,9 @@ class Answerer:
         """Return an answer with how sure it is."""
         if given.pieces:
             return self._judge_several(given)
-        heard = self.writer.language.anonymizer.anonymize(given.text)
+        heard = self._anonymize(given.text)
         score_kind = given.part.score_kind if given.part else ""
-        readings = self.writer.readings(heard, given.candidates, score_kind)
+        readings = self.writer.readings(heard, given.candidates, score_kind, given.utterance)
         # What is no form is not shown.
         readings = [each for each in readings if each.slots is not None]
         fits = Fit()
@@ -323,7 +331,7 @@ class Answerer:
         if given.part is self.learned or not readings:
             reasons = objections(heard)
         if given.part is self.learned:
-            readings, fits = self._fit(readings, heard)
+            readings, fits = self._fit(readings, heard, given.utterance)
         about = replace(self._about(given, heard, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
@@ -336,7 +344,7 @@ class Answerer:
         return Answer(given, (), heard, readings, about, probability, decision, reasons)
 
     def _fit(
-        self, readings: Sequence[Reading[str]], heard: Anonymized
+        self, readings: Sequence[Reading[str]], heard: Anonymized, utterance: str
     ) -> tuple[list[Reading[str]], Fit]:
         """Return the readings of a learned parser in the order of how well they fit what was said, and the fit of the
         first.
@@ -357,7 +365,7 @@ class Answerer:
             first = ordered[0]
             form, values = exchange(_form(first), first.slots or (), pair)
             turned = replace(first.candidate, form=canonical_text(form), values=values)
-            [reading] = self.writer.readings(heard, [turned], None)
+            [reading] = self.writer.readings(heard, [turned], None, utterance)
             fit = self._fit_of(reading, heard)
             if not fit.exchanged:
                 return [reading, *ordered], replace(fit, exchanged=(pair,))
@@ -382,7 +390,7 @@ class Answerer:
         Where all are understood, the one candidate does one after the other.
         """
         several = tuple(map(self.judge, _flat(given.pieces)))
-        heard = self.writer.language.anonymizer.anonymize(given.utterance)
+        heard = self._anonymize(given.utterance)
         probabilities = [each.probability or 0.0 for each in several]
         probability, readings, about = None, [], AnsweredForm()
         if not any(each.is_unknown for each in several):
@@ -411,7 +419,7 @@ class Answerer:
     def write(self, answer: Answer) -> str:
         """Return an answer as JSON, with who gave it (docs/reference/parse-server.md)."""
         given, language = answer.given, self.writer.language
-        said = language.anonymizer.anonymize(given.utterance)
+        said = self._anonymize(given.utterance)
         warnings = unknown_tokens(given.utterance, language.ontology)
         if self.problem:
             warnings = (*warnings, self.problem)
@@ -543,6 +551,9 @@ class Answerer:
                 return shall_i(first["english"])
             case Decision.ASK if first:
                 asked = [slot["question"] for slot in first["open_slots"]]
+                asked += [
+                    gap["question"] for each in first["plan"]["unresolved"] for gap in each["open"]
+                ]
                 asked += [each["message"] for each in first["plan"]["problems"]]
                 return next(iter(asked), shall_i(first["english"]))
         told = [each.message for each in answer.reasons if each.code not in _OF_FIT]

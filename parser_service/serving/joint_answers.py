@@ -9,7 +9,6 @@ from typing import Any
 from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
 from annotations.language.grounding import Slot
-from annotations.language.plans import PlanProblem, Trouble
 from annotations.language.recipes import (
     MOST_COMMANDS,
     Distances,
@@ -115,16 +114,9 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
     best = next(iter(answer["candidates"]), None)
     is_unknown = best is None or answer["is_unknown"]
     form: Form = UNKNOWN
-    doubts: list[PlanProblem] = []
     slots: list[Slot] = []
     if best is not None and not is_unknown:
         form = read_form(best["grounded"])
-        # Of which of several entities is meant; what else is wrong follows from the form and its open slots.
-        doubts = [
-            PlanProblem(Trouble.AMBIGUOUS, 0, each["message"], each["hint"])
-            for each in best["plan"]["problems"]
-            if each["code"] == Trouble.AMBIGUOUS and not each["step"]
-        ]
         slots = [
             Slot(
                 tuple(each["path"]),
@@ -132,17 +124,18 @@ def understood(answer: Mapping[str, Any], language: WorldLanguage) -> Understood
                 each["entity_class"],
                 tuple(each["choices"]),
                 each["is_named"],
+                likely=each["likely"],
                 phrases=tuple(each["phrases"]),
+                is_choice=each["likely"] is not None and bool(each["phrases"]),
             )
             for each in best["open_slots"]
-            if each["likely"] is None
         ]
     return UnderstoodCommand(
         answer["utterance"],
         is_unknown,
         best["grounded"] if best else "",
         best["english"] if best else "",
-        task_plan_of(form, doubts, language, slots=slots),
+        task_plan_of(form, language, slots, answer["utterance"]),
         answer["decision"],
         answer["sureness"],
         answer["probability"],

@@ -21,7 +21,7 @@ from annotations.language.english import (
 )
 from annotations.language.forms import Form, Reference, walk
 from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled
-from annotations.language.plans import Lookup, Named, PlanProblem, Value, Words
+from annotations.language.plans import Lookup, Named, Value, Words
 from annotations.language.predicates import ask_for, can_stand_in, is_loose, texts_of_patterns
 from annotations.language.recipes import spoken
 from parser_service.parsers.interface import Candidate
@@ -40,18 +40,17 @@ Paths = tuple[SlotPath, ...]
 class Outline:
     """A text with named places: signs, and values of JSON.
 
-    ``is_executable`` and ``problems`` (as JSON) are those of every plan that is made with it. ``is_right`` is
-    None until an answer made with it was compared.
+    ``is_executable`` is that of every plan that is made with it. ``is_right`` is None until an answer made with it was
+    compared.
     """
 
-    __slots__ = ("_names", "_pieces", "is_executable", "is_right", "problems")
+    __slots__ = ("_names", "_pieces", "is_executable", "is_right")
 
     def __init__(self, text: str, plan: Mapping[str, Any] | None = None) -> None:
         parts = _PLACE.split(text)
         self._pieces = parts[0::2]
         self._names = [n if len(n) == 1 else json.loads(n)[_AWAITED] for n in parts[1::2]]
         self.is_executable = bool(plan and plan["is_executable"])
-        self.problems: list[dict[str, Any]] = plan["problems"] if plan else []
         self.is_right: bool | None = None
 
     def fill(self, values: Mapping[str, str]) -> str:
@@ -140,14 +139,11 @@ class Outlines:
         asked = self.asked(form, paths) or ()
         answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
         own = {name: _await(name) for name in OWN}
-        plan = answer["plan"] | {name: _await(name) for name in ("is_executable", "problems")}
-        text = as_json(answer | own | {"plan": plan})
+        text = as_json(answer | own)
         return Outline(text, answer["plan"]) if _is_sound(text, paths) else None
 
     @remembered(REMEMBERED)
-    def task_plan(
-        self, form: str, paths: Paths, texts: tuple[str, ...], doubts: tuple[PlanProblem, ...]
-    ) -> WrittenTaskPlan:
+    def task_plan(self, form: str, paths: Paths, texts: tuple[str, ...]) -> WrittenTaskPlan:
         """Return the task plan of a form with entities in it, and the sentence about it, as JSON.
 
         No outline says them: which steps there are depends on which entities are the same.
@@ -155,7 +151,7 @@ class Outlines:
         grounded = _read(form)
         for path, text in zip(paths, texts, strict=True):
             grounded = filled(grounded, path, text)
-        made = task_plan_of(grounded, doubts, self.language)
+        made = task_plan_of(grounded, self.language)
         return WrittenTaskPlan(as_json(made.as_json()), as_json(spoken(made)), made.is_executable)
 
     @remembered(REMEMBERED)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf
 from typing import Any, Generic, TypeVar
@@ -27,7 +27,7 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, PlanProblem, make_plan
+from annotations.language.plans import Lookup, make_plan
 from annotations.language.predicates import gloss
 from annotations.language.recipes import TaskPlan, apply_recipes, spoken
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
@@ -223,14 +223,23 @@ def _read(
     if form is None:
         return Reading(candidate, ParsedCandidate(candidate.form, score_of(candidate)))
     given = deanonymize(form, heard, language.ontology, language.evidence, candidate.values)
-    answer = answer_with(candidate, given, language, language.lookup)
+    answer = answer_with(candidate, given, language, language.lookup, heard.original)
     return Reading(candidate, answer, given.slots, answer.executable_plans)
 
 
 def answer_with(
-    candidate: Candidate, given: Deanonymized, language: WorldLanguage, lookup: Lookup
+    candidate: Candidate,
+    given: Deanonymized,
+    language: WorldLanguage,
+    lookup: Lookup,
+    utterance: str = "",
 ) -> ParsedCandidate:
-    """Return one well-formed candidate with its entities in it. ``lookup`` finds those of the plan."""
+    """Return one well-formed candidate with its entities in it.
+
+    Args:
+        lookup: finds the entities of the plan.
+        utterance: what was said; the plan tells where it has the words that name nothing.
+    """
     plan = make_plan(
         given.form,
         language.ontology,
@@ -238,8 +247,9 @@ def answer_with(
         language.action_names,
         slots=given.slots,
         lookup=lookup,
+        utterance=utterance,
     )
-    task_plan = task_plan_of(given.form, (), language, lookup, given.slots)
+    task_plan = task_plan_of(given.form, language, given.slots, utterance, lookup)
     return ParsedCandidate(
         form=candidate.form,
         score=score_of(candidate),
@@ -264,17 +274,17 @@ def answer_with(
 
 def task_plan_of(
     form: Form,
-    doubts: Sequence[PlanProblem],
     language: WorldLanguage,
-    lookup: Lookup | None = None,
     slots: Sequence[Slot] = (),
+    utterance: str = "",
+    lookup: Lookup | None = None,
 ) -> TaskPlan:
     """Return what the robot of the world does for a form with entities, in its own primitives.
 
     Args:
-        doubts: the problems of entities that are only likely, where ``slots`` do not have them.
-        lookup: finds the entities; that of the language by default.
         slots: those of the form, so that the plan asks for the open ones as a dialogue does.
+        utterance: what was said.
+        lookup: finds the entities; that of the language by default.
     """
     # Recipes know the arguments by the names that the language gives them, whatever the robot calls them.
     plan = make_plan(
@@ -283,8 +293,8 @@ def task_plan_of(
         language.predicates,
         slots=slots,
         lookup=lookup or language.lookup,
+        utterance=utterance,
     )
-    plan = replace(plan, problems=(*doubts, *plan.problems))
     return apply_recipes(plan, language.recipes, language.usual)
 
 

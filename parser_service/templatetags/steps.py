@@ -7,19 +7,13 @@ from typing import Any
 
 from django import template
 
-from annotations.language.plans import Step
-
 register = template.Library()
 
 
 @register.filter
-def referents(step: Step | Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return each word of a step that stands for something said before, such as ``it``, with what that is.
-
-    ``step`` may be plain data, as ``Step.as_json`` returns them.
-    """
-    data = step.as_json() if isinstance(step, Step) else step
-    pairs = (pair for value in data["arguments"].values() for pair in _references(value))
+def referents(step: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return each word of a step that stands for something said before, such as ``it``, with what that is."""
+    pairs = (pair for value in step["arguments"].values() for pair in _references(value))
     return list(dict.fromkeys(pairs))
 
 

@@ -21,6 +21,7 @@ from annotations.language.dialogue.reactions import (
 )
 from annotations.language.forms import UNKNOWN, Form, Unknown, read_form, to_corpus
 from annotations.language.grounding import (
+    NOT_UNDERSTOOD,
     Anonymized,
     Anonymizer,
     Evidence,
@@ -37,6 +38,7 @@ from annotations.language.predicates import Predicate, gloss
 PATIENCE = 3  # answers that do not fit before the dialogue gives up
 ATTEMPTS = 3  # utterances that lead nowhere before the dialogue gives up
 _GIVE_UP = "I give up. Please start again."
+_ANOTHER_WAY = "Please say it another way."
 _TUPLES_OF_SLOTS = ("path", "candidates", "phrases")  # lists in JSON
 
 
@@ -164,7 +166,7 @@ class DialogueManager:
         attempts, offers = (before.attempts, before.offers) if before else (0, ())
         if isinstance(form, Unknown):
             asked = DialogueState(Phase.REPHRASING, attempts=attempts, offers=offers)
-            return _rephrase(asked, "I do not understand that.")
+            return _rephrase(asked, NOT_UNDERSTOOD)
         given = deanonymize(form, heard, self.ontology, self.evidence, values)
         state = DialogueState(
             Phase.CHECKING, form, given.form, given.slots, attempts=attempts, offers=offers
@@ -193,7 +195,7 @@ class DialogueManager:
     def _decide(self, state: DialogueState, reaction: Reaction) -> DialogueState:
         """Take a yes or a no to the whole form."""
         if reaction is Reaction.NO:
-            return _rephrase(state, "Then I got it wrong.")
+            return _rephrase(state, f"Then I got it wrong. {_ANOTHER_WAY}")
         if reaction is not Reaction.YES:
             return self._miss(state, "Please say yes or no. ")
         if state.phase is Phase.CHECKING:
@@ -288,7 +290,7 @@ def state_with_prompt(
     """Return the state with what to say in it."""
     slot, classes = state.asked, dialogue.ontology.classes
     if state.phase is Phase.REPHRASING:
-        prompt = "Please say it another way."
+        prompt = _ANOTHER_WAY
     elif slot is None:
         named = dialogue.ontology.class_of_text
         said = gloss(state.form, dialogue.predicates, classes, named)
@@ -321,12 +323,12 @@ def progress(state: DialogueState) -> tuple[int, int, int, int]:
     return ATTEMPTS - state.attempts, open_slots, PATIENCE - state.misses, phase
 
 
-def _rephrase(state: DialogueState, why: str) -> DialogueState:
+def _rephrase(state: DialogueState, prompt: str) -> DialogueState:
     """Ask for another utterance, as often as there are attempts."""
     tried = replace(state, attempts=state.attempts + 1, slots=(), misses=0)
     if tried.attempts >= ATTEMPTS:
         return replace(tried, phase=Phase.CANCELLED, prompt=_GIVE_UP)
-    return replace(tried, phase=Phase.REPHRASING, prompt=f"{why} Please say it another way.")
+    return replace(tried, phase=Phase.REPHRASING, prompt=prompt)
 
 
 def _after(other: Slot, slot: Slot, value: str) -> Slot:

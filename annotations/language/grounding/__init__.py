@@ -19,6 +19,7 @@ from annotations.language.grounding.drawing import may_fill
 from annotations.language.grounding.grounding import Grounded, ground
 from annotations.language.grounding.hearing import HeardText, HearingReader
 from annotations.language.grounding.questions import (
+    NOT_UNDERSTOOD,
     choices_of,
     is_asked_plainly,
     named_entities,
@@ -44,6 +45,7 @@ from annotations.language.grounding.utterance_lattice import (
 from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
 
 __all__ = [
+    "NOT_UNDERSTOOD",
     "QUESTION_WORD",
     "Anonymized",
     "Anonymizer",

@@ -11,6 +11,7 @@ from annotations.language.grounding.deanonymizer import Deanonymized, Slot
 from annotations.language.predicates import Predicate, ask_for
 from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 
+NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 MOST_OFFERED = 4  # entities of the ontology that a question lists
 
 

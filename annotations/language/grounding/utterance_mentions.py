@@ -258,20 +258,22 @@ def unknown_phrases(anonymized: Anonymized, ontology: Ontology) -> Mapping[str, 
 
     A phrase stands after an article or another determiner and ends before a word that no name contains:
     "flurb" in "bring me the flurb from the shelf". Words with a capital inside the utterance are a
-    phrase too; they come first for a name. After a preposition of place a phrase comes first for a location or a
-    room, elsewhere for an object.
+    phrase too; a name is one of those, a location or a room one after a preposition of place, an object or a category
+    one elsewhere. Where there is none of its kind, every phrase may be meant.
     """
     found = list(_find(anonymized))
     phrases = tuple(dict.fromkeys(phrase for phrase, _, _ in found))
     places = [phrase for phrase, is_place, _ in found if is_place]
     names = [phrase for phrase, _, is_name in found if is_name]
     things = [phrase for phrase, is_place, is_name in found if not is_place and not is_name]
-
-    def first(preferred: list[str]) -> tuple[str, ...]:
-        return tuple(dict.fromkeys((*preferred, *phrases)))
-
-    by_class = {"name": first(names), "location": first(places), "room": first(places)}
-    return {"": phrases, **by_class, "object": first(things), "category": first(things)}
+    kinds = {
+        "name": names,
+        "location": places,
+        "room": places,
+        "object": things,
+        "category": things,
+    }
+    return {"": phrases} | {each: tuple(dict.fromkeys(of)) or phrases for each, of in kinds.items()}
 
 
 def _find(anonymized: Anonymized) -> Iterator[tuple[str, bool, bool]]:

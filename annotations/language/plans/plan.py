@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -90,20 +90,85 @@ ProblemT = TypeVar("ProblemT", bound=AsData)
 
 
 @dataclass(frozen=True, slots=True)
+class SaidWords:
+    """Words of an utterance, in its characters ``start`` to ``end``; None where it does not have them so."""
+
+    text: str
+    start: int | None = None
+    end: int | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        return {"text": self.text, "start": self.start, "end": self.end}
+
+
+@dataclass(frozen=True, slots=True)
+class OpenArgument:
+    """What is not settled of an argument, and the question that settles it.
+
+    ``words`` of the utterance stand there and name nothing that is known. ``likely`` is a guess. ``asked_in`` is the
+    number of the step that asks; 0 where no step does.
+    """
+
+    argument: str
+    question: str
+    entity_class: str = ""
+    words: tuple[SaidWords, ...] = ()
+    likely: str | None = None
+    asked_in: int = 0
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "argument": self.argument,
+            "question": self.question,
+            "entity_class": self.entity_class,
+            "words": [each.as_json() for each in self.words],
+            "likely": self.likely,
+            "asked_in": self.asked_in or None,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Unresolved:
+    """A step of the form that does not ground, with what is known of it and what is ``open``.
+
+    ``steps`` are the numbers of the steps that wait for it. ``arguments`` are what is known; an ``OpenValue`` stands
+    for what is not. ``predicate`` is empty for a part that says nothing to do: a question stands in its place.
+    """
+
+    steps: tuple[int, ...]
+    action: str
+    predicate: str
+    text: str
+    arguments: tuple[tuple[str, TaskValue], ...]
+    open: tuple[OpenArgument, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "steps": list(self.steps),
+            "action": self.action,
+            "predicate": self.predicate,
+            "text": self.text,
+            "arguments": {name: value.as_json() for name, value in self.arguments},
+            "open": [each.as_json() for each in self.open],
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class PlanOf(Generic[StepT, ProblemT]):
-    """Steps in the order in which a robot does them, and the problems of the plan.
+    """Steps in the order in which a robot does them, the problems of the plan, and what of it is not settled.
 
     ``version`` is that of the data, which follow the schema of the kind of plan.
     """
 
     steps: tuple[StepT, ...]
     problems: tuple[ProblemT, ...] = ()
+    unresolved: tuple[Unresolved, ...] = ()
     version: ClassVar[int] = 1
 
     @property
     def is_executable(self) -> bool:
         """Whether a robot can do it without asking anybody."""
-        return bool(self.steps) and not self.problems
+        return bool(self.steps) and not self.problems and not self.unresolved
 
     def as_json(self) -> dict[str, Any]:
         """Return plain data that follow the schema."""
@@ -112,6 +177,7 @@ class PlanOf(Generic[StepT, ProblemT]):
             "is_executable": self.is_executable,
             "steps": [step.as_json() for step in self.steps],
             "problems": [problem.as_json() for problem in self.problems],
+            "unresolved": [each.as_json() for each in self.unresolved],
         }
 
 
@@ -119,30 +185,18 @@ class PlanOf(Generic[StepT, ProblemT]):
 class Plan(PlanOf[Step, PlanProblem]):
     """The actions of a form; its data follow ``plan_schema``."""
 
-    @property
-    def unresolved(self) -> tuple[int, ...]:
-        """The numbers of the steps that do not ground: those with a problem, and those that wait for what a person
-        answers. A robot can do the others."""
-        asked = {step.number for step in self.steps if step.predicate == ASK}
-        troubled = {problem.step for problem in self.problems}
-        return tuple(
-            step.number
-            for step in self.steps
-            if step.number not in asked
-            and (
-                step.number in troubled
-                or any(not asked.isdisjoint(_results_in(value)) for _, value in step.arguments)
-            )
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """An entity of the ontology. ``attributes`` are those that a robot needs: room, category."""
+    """An entity of the ontology. ``attributes`` are those that a robot needs: room, category.
+
+    ``doubt`` asks whether it is meant, where it is only likely.
+    """
 
     entity_class: str
     text: str
     attributes: Mapping[str, str] = field(default_factory=dict, hash=False)
+    doubt: OpenArgument | None = field(default=None, compare=False)
 
     def as_json(self) -> dict[str, Any]:
         return {
@@ -158,12 +212,14 @@ class Words:
     """A text that is no entity: words to say, ``current``.
 
     ``is_of_robot`` marks the robot's own words, such as a question: it says them as they are. ``said`` is what it says
-    in their place, where that is something else: "sentence" for the class whattosay.
+    in their place, where that is something else: "sentence" for the class whattosay. ``doubt`` asks what they name,
+    where that should be an entity.
     """
 
     text: str
     is_of_robot: bool = field(default=False, compare=False)
     said: str = field(default="", compare=False)
+    doubt: OpenArgument | None = field(default=None, compare=False)
 
     def as_json(self) -> dict[str, Any]:
         return {"kind": "text", "text": self.text}
@@ -258,21 +314,7 @@ class Operator:
 
 
 Value: TypeAlias = "Named | Words | Number | Described | Referred | StepResult | OpenValue"
-
-
-def _results_in(value: Value) -> Iterator[int]:
-    """Yield the numbers of the steps whose results a value holds."""
-    match value:
-        case StepResult(step):
-            yield step
-        case Referred(_, inner):
-            yield from _results_in(inner)
-        case Described(conditions=conditions, of=of):
-            for condition in conditions:
-                for each in condition.values:
-                    yield from _results_in(each)
-            if of is not None:
-                yield from _results_in(of)
+TaskValue: TypeAlias = "Value | Operator"
 
 
 @cache

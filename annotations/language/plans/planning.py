@@ -29,7 +29,7 @@ from annotations.language.forms import (
     kind_of_class,
     walk,
 )
-from annotations.language.grounding import Slot, question_for
+from annotations.language.grounding import NOT_UNDERSTOOD, Slot, named_entities, question_for
 from annotations.language.ontology import Ontology
 from annotations.language.plans.descriptions import (
     Describer,
@@ -44,6 +44,7 @@ from annotations.language.plans.plan import (
     Described,
     Named,
     Number,
+    OpenArgument,
     OpenValue,
     Plan,
     PlanProblem,
@@ -54,6 +55,7 @@ from annotations.language.plans.plan import (
     Value,
     Words,
 )
+from annotations.language.plans.unresolved import COMMAND, Gaps, said_words
 from annotations.language.predicates import (
     ArgumentKind,
     Predicate,
@@ -65,11 +67,11 @@ from annotations.language.predicates import (
 )
 
 MOST_STEPS = 50
-NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 _PLACES = frozenset(("location", "room"))
 _PLACE_ARGUMENTS = frozenset(
     ("destination", "source", "where")
 )  # what they describe is no antecedent
+_KINDS = {"thing": THING, "person": PERSON}  # of what answers a question for an argument
 
 
 def make_plan(
@@ -79,6 +81,7 @@ def make_plan(
     action_names: Mapping[str, ActionName] | None = None,
     slots: Sequence[Slot] = (),
     lookup: Lookup | None = None,
+    utterance: str = "",
 ) -> Plan:
     """Return the steps that a form asks for.
 
@@ -90,17 +93,18 @@ def make_plan(
         slots: the slots that were asked about; an entity that is only likely is named as a problem, and for
             what is open the plan asks as ``question_for`` does.
         lookup: of ontology and predicates, to be shared by many plans; made here by default.
+        utterance: what was said, to tell where the words stand that name nothing.
     """
     known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
-    planner = _Planner(lookup, known, action_names or {})
-    planner.problems += doubts_about(slots)
-    planner.open_slots = _open_slots(form, slots)
+    planner = _Planner(lookup, known, action_names or {}, form, utterance, slots)
+    planner.problems += _doubts_about(slots)
     planner.add(form)
-    return Plan(tuple(planner.steps), tuple(planner.problems))
+    unresolved = tuple(planner.gaps.unresolved(planner.steps))
+    return Plan(tuple(planner.steps), tuple(planner.problems), unresolved)
 
 
-def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
+def _doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
     """Return a problem for each slot with an entity that is only likely; they come before those of the steps."""
     doubts = []
     for slot in slots:
@@ -114,10 +118,10 @@ def doubts_about(slots: Sequence[Slot]) -> tuple[PlanProblem, ...]:
 
 
 def _open_slots(form: Form, slots: Sequence[Slot]) -> dict[tuple[Form, str], list[Slot]]:
-    """Return what stands in the form for nothing, and the predicate that takes it → its slots, in order."""
+    """Return what stands in the form for an open slot, and the predicate that takes it → its slots, in order."""
     found: defaultdict[tuple[Form, str], list[Slot]] = defaultdict(list)
     for slot in slots:
-        if slot.filler is None and slot.path:
+        if slot.value is None and slot.path:
             part, parent = form, form
             for place in slot.path:
                 part, parent = children(part)[place], part
@@ -192,15 +196,20 @@ class _Planner:
     lookup: Lookup
     predicates: Mapping[str, Predicate]
     names: Mapping[str, ActionName]
+    form: Form
+    utterance: str
+    slots: Sequence[Slot]
     steps: list[Step] = field(default_factory=list)
     problems: list[PlanProblem] = field(default_factory=list)
     describer: Describer = field(init=False)
     acting: _Acting = field(default_factory=lambda: _Acting("", Lambda(1, "e", ())))
     waiting: list[tuple[Trouble, str, str]] = field(default_factory=list)
     last: dict[str, Value] = field(default_factory=dict)  # person or thing → the one described last
-    open_slots: dict[tuple[Form, str], list[Slot]] = field(default_factory=dict)
+    gaps: Gaps = field(default_factory=Gaps)
+    open_slots: dict[tuple[Form, str], list[Slot]] = field(init=False)
 
     def __post_init__(self) -> None:
+        self.open_slots = _open_slots(self.form, self.slots)
         self.describer = Describer(
             self.predicates, self.text_value, self._referred, self.lookup.classes
         )
@@ -214,15 +223,21 @@ class _Planner:
                 "ask the operator to say it another way",
                 step=0,
             )
-            self.ask(NOT_UNDERSTOOD, "command")
+            self._ask_what_to_do()
             return
         self._add(form, _ActionScope())
         if not any(step.predicate != ASK for step in self.steps):
             message = "the form says nothing to do"
             self.report(Trouble.NO_ACTION, message, "put an action around it, such as find", step=0)
-            self.ask(NOT_UNDERSTOOD, "command")
+            if not self.steps:
+                self._ask_what_to_do()
 
-    def _add(self, form: Form, scope: _ActionScope, is_part: bool = False) -> None:
+    def _ask_what_to_do(self) -> None:
+        words = (self.utterance,) if self.utterance.strip() else ()
+        self.ask(OpenArgument(COMMAND, NOT_UNDERSTOOD, words=said_words(words, self.utterance)))
+
+    def _add(self, form: Form, scope: _ActionScope, whole: str = "") -> None:
+        """Add the steps of a form, or of a part of what the predicate ``whole`` puts together."""
         if isinstance(form, Lambda):
             bodies = tuple(open_lambdas(form))
             about = tuple(each for each in bodies if is_description(each, self.predicates))
@@ -230,28 +245,29 @@ class _Planner:
             actions = [body for body in bodies if body not in about]
             for body in actions:
                 self._add(body, inner)
-            if is_part and not actions:
-                self._miss_action()
+            if whole and not actions:
+                self._miss_action(form, whole)
         elif isinstance(form, Application):
             declared = self.predicates.get(str(form.predicate))
             is_sequence = declared is not None and declared.kind is PredicateKind.SEQUENCE
             if is_sequence or form.predicate in (CONJUNCTION, SEQUENCE):
                 for argument in form.arguments:
-                    self._add(argument, scope, is_part=True)
+                    self._add(argument, scope, str(form.predicate))
                 if not form.arguments:
-                    self._miss_action()
+                    self._miss_action(form, whole)
             else:
                 self.step(form, scope)
         else:
-            self._miss_action()
+            self._miss_action(form, whole)
 
-    def _miss_action(self) -> None:
+    def _miss_action(self, form: Form, whole: str) -> None:
         """Ask about a part of the command that says nothing to do."""
         message = "a part of the command has no form that the robot knows"
         self.report(
             Trouble.NOT_UNDERSTOOD, message, "ask the operator to say it another way", step=0
         )
-        self.ask(NOT_UNDERSTOOD, "command")
+        gap = self._gap(COMMAND, NOT_UNDERSTOOD, self._slot_of(form, whole))
+        self.ask(replace(gap, argument=COMMAND))
 
     def step(self, form: Application, scope: _ActionScope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""
@@ -273,6 +289,7 @@ class _Planner:
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""
             name = argument_name(action, place, argument, entity_class)
+            value = self._asked(value, name, place, argument)
             if name not in _PLACE_ARGUMENTS:
                 said.append((argument, value))
             numbered = (f"{name}_{number}" for number in count(2))
@@ -281,7 +298,7 @@ class _Planner:
                 if name not in arguments
                 else next(each for each in numbered if each not in arguments)
             )
-            arguments[free] = self._asked(value, name, place, argument)
+            arguments[free] = value
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
                 place = max(place_of_argument(action, name), len(gathered))
@@ -296,47 +313,55 @@ class _Planner:
                 message = f"“{superlative}” does not say among which things"
                 hint = "name a category or a place"
                 self.waiting.append((Trouble.SUPERLATIVE_WITHOUT_SET, message, hint))
+                assert isinstance(value, Described)
+                self.gaps.vague[value.id] = OpenArgument("", _sentence(message))
         number = self._append(action, arguments, text)
         for trouble, message, hint in self.waiting:
             self.report(trouble, message, hint, step=number)
         self.waiting, self.acting = before, around
         return number
 
-    def ask(self, question: str, expects: str, noun: str = "") -> StepResult:
+    def ask(self, gap: OpenArgument, noun: str = "") -> StepResult:
         """Add a question to the operator; return its answer. ``noun`` says what is expected, if that is no word."""
         arguments: dict[str, Value] = {
-            "question": Words(question, is_of_robot=True),
-            "expects": Words(expects, said=noun),
+            "question": Words(gap.question, is_of_robot=True),
+            "expects": Words(gap.entity_class or gap.argument, said=noun),
         }
-        return StepResult(self._append(ASK, arguments, f"ask: {question}", gives_result=True))
+        number = self._append(ASK, arguments, f"ask: {gap.question}", gives_result=True)
+        self.gaps.asked[number] = replace(gap, asked_in=number)
+        return StepResult(number)
 
     def report(self, trouble: Trouble, message: str, hint: str, step: int) -> None:
-        problem = PlanProblem(trouble, step, f"{message[:1].upper()}{message[1:]}.", hint)
+        problem = PlanProblem(trouble, step, _sentence(message), hint)
         if problem not in self.problems:
             self.problems.append(problem)
 
     def text_value(self, constant: Constant, predicate: str, place: int) -> Value:
         """Return the value of a constant; an open one is asked for, an unknown one reported."""
+        slot = self._slot_of(constant, predicate)
         if constant.token_class:
             noun = self.lookup.classes.noun(constant.token_class)
             what = f"the {noun} is open"
             self.waiting.append((Trouble.OPEN_SLOT, what, "name one, or answer the question"))
-            question = self._question(
-                constant.token_class, self.acting.next_slot(constant, predicate, place)
-            )
-            asked = self._as_slot(constant, predicate, question)
-            return self.ask(asked, constant.token_class, noun)
-        value, is_missing = self.lookup.value(str(constant.value), predicate, place)
-        if is_missing and (places := self.lookup.places_called(str(constant.value))):
-            message = f"“{constant.value}” can be several places"
+            path = self.acting.next_slot(constant, predicate, place)
+            question = "" if slot else self._question(constant.token_class, path)
+            return self.ask(self._gap("", question, slot, constant.token_class), noun)
+        text = str(constant.value)
+        value, is_missing = self.lookup.value(text, predicate, place)
+        if is_missing and (places := self.lookup.places_called(text)):
+            message = f"“{text}” can be several places"
             *others, last = (f"the {each.text}" for each in places)
             choices = f"{', '.join(others)} or {last}"
             self.waiting.append((Trouble.AMBIGUOUS, message, "name one, or answer the question"))
-            return self.ask(f"Which one do you mean: {choices}?", places[0].entity_class)
+            question, entity_class = f"Which one do you mean: {choices}?", places[0].entity_class
+            return self.ask(self._gap("", question, None, entity_class, (text,)))
         if is_missing:
-            message = f"the ontology has no “{constant.value}”"
+            message = f"the ontology has no “{text}”"
             hint = "add it to the ontology, or name something that is there"
             self.waiting.append((Trouble.UNKNOWN_ENTITY, message, hint))
+            return Words(text, doubt=self._gap("", _sentence(message), None, "", (text,)))
+        if slot is not None and isinstance(value, Named | Words):
+            return replace(value, doubt=self._gap("", "", slot, constant.token_class))
         return value
 
     def _gather(self, form: Application, scope: _ActionScope) -> tuple[Form, ...]:
@@ -384,7 +409,10 @@ class _Planner:
             for condition in value.conditions:
                 for each in condition.values:
                     self._remember(UNKNOWN, each)
-        if kind := _kind_of(form, value):
+        kind = _kind_of(form, value)
+        if isinstance(value, StepResult) and value.step in self.gaps.asked:
+            kind = kind or _KINDS.get(self.gaps.asked[value.step].argument, "")
+        if kind:
             self.last.pop(kind, None)
             self.last[kind] = value
 
@@ -401,15 +429,29 @@ class _Planner:
             return value
         message = f"nothing before “{word}” says what it stands for"
         self.waiting.append((Trouble.NO_ANTECEDENT, message, "name it, or answer the question"))
-        return self.ask(f"What do you mean by “{word}”?", kinds[0])
+        return self.ask(self._gap(kinds[0], f"What do you mean by “{word}”?", None, "", (word,)))
 
-    def _as_slot(self, form: Form, predicate: str, question: str) -> str:
-        """Return the question for the slot that stands in the form; ``question`` is the one without an utterance."""
-        slots = self.open_slots.get((form, predicate))
-        if not slots:
-            return question
-        slot = slots.pop(0) if len(slots) > 1 else slots[0]
-        return question_for(slot, form, self.predicates, question, self.lookup.classes)
+    def _slot_of(self, form: Form, predicate: str) -> Slot | None:
+        """Return the open slot that stands in the form; None where the plan is made without slots."""
+        slots = self.open_slots.get((form, predicate), [])
+        return slots.pop(0) if len(slots) > 1 else next(iter(slots), None)
+
+    def _gap(
+        self,
+        argument: str,
+        question: str,
+        slot: Slot | None,
+        entity_class: str = "",
+        words: Sequence[str] = (),
+    ) -> OpenArgument:
+        """Return what is open, with the question that a dialogue asks for its slot; ``question`` is the one without."""
+        if slot is None:
+            said = said_words(words, self.utterance)
+            return OpenArgument(argument, question, entity_class, said)
+        named, classes = named_entities(self.slots), self.lookup.classes
+        question = question_for(slot, self.form, self.predicates, classes=classes, named=named)
+        said = said_words(slot.phrases, self.utterance)
+        return OpenArgument(argument, question, slot.entity_class, said, slot.likely)
 
     def _asked(self, value: Value, name: str, place: int, argument: Form | None = None) -> Value:
         """Return the answer of the operator in place of an argument that is open."""
@@ -417,10 +459,9 @@ class _Planner:
             return value
         message = f"nothing says the {name.replace('_', ' ')} of “{self.acting.action}”"
         self.waiting.append((Trouble.MISSING_ARGUMENT, message, "name it, or answer the question"))
-        question = self._question("", self.acting.place_of(place))
-        if argument is not None:
-            question = self._as_slot(argument, self.acting.action, question)
-        return self.ask(question, name)
+        slot = None if argument is None else self._slot_of(argument, self.acting.action)
+        question = "" if slot else self._question("", self.acting.place_of(place))
+        return self.ask(self._gap(name, question, slot))
 
     def _question(self, entity_class: str, path: tuple[int, ...]) -> str:
         """Return the question for what is open at ``path`` of the action."""
@@ -440,6 +481,10 @@ class _Planner:
         number = len(self.steps) + 1
         self.steps.append(Step(number, names.name, predicate, renamed, text, gives_result))
         return number
+
+
+def _sentence(message: str) -> str:
+    return f"{message[:1].upper()}{message[1:]}."
 
 
 def _kind_of(form: Form, value: Value) -> str:

@@ -14,6 +14,7 @@ from annotations.language.plans import (
     Referred,
     Step,
     StepResult,
+    TaskValue,
     Value,
     Words,
 )
@@ -39,7 +40,7 @@ from annotations.language.recipes.task_plan import (
     TaskPlan,
     TaskProblem,
 )
-from annotations.language.recipes.values import TaskValue, kinds_of, with_results
+from annotations.language.recipes.values import kinds_of, renumbered, with_results
 
 _CURRENT = Words("current")
 
@@ -85,15 +86,19 @@ class _Applier:
             if step.number not in absorbed:
                 self._apply(step, fits[step.number])
         steps = with_texts(self._situation.steps, step_texts(self._situation.steps))
-        first = {step.source: step.number for step in reversed(steps)}
+        of_source: dict[int, list[int]] = {}
+        for done in steps:
+            of_source.setdefault(done.source, []).append(done.number)
         of_plan = (
-            TaskProblem.of_plan(each, first.get(each.step, 0)) for each in self._plan.problems
+            TaskProblem.of_plan(each, of_source.get(each.step, [0])[0])
+            for each in self._plan.problems
         )
         own = (  # one that is about a step which was left out is about the whole plan
             each if each.step <= len(steps) else replace(each, step=0)
             for each in self._situation.problems
         )
-        return TaskPlan(steps, (*of_plan, *own))
+        unresolved = (renumbered(each, of_source, self._numbers) for each in self._plan.unresolved)
+        return TaskPlan(steps, (*of_plan, *own), tuple(unresolved))
 
     def _best_fit(self, step: Step) -> _Fit | None:
         recipes = self._book.recipes_of(step.predicate)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from annotations.language.plans import Described
+from annotations.language.plans import (
+    Described,
+    TaskValue,
+)
 from annotations.language.recipes.task_plan import TaskPlan
-from annotations.language.recipes.values import TaskValue, content
+from annotations.language.recipes.values import content
 
 
 def same_plan(first: TaskPlan, second: TaskPlan) -> bool:

@@ -6,8 +6,13 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from annotations.language.ontology import Ontology
-from annotations.language.plans import AT, Described, Lookup, Named
-from annotations.language.recipes.values import TaskValue
+from annotations.language.plans import (
+    AT,
+    Described,
+    Lookup,
+    Named,
+    TaskValue,
+)
 
 UsualPlaces: TypeAlias = Mapping[str, Named]
 

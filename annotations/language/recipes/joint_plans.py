@@ -24,7 +24,16 @@ from math import isfinite, prod
 from typing import Any, TypeAlias
 
 from annotations.language.errors import Refusal
-from annotations.language.plans import ASK, NOT_UNDERSTOOD, Named, Operator, Trouble, Words
+from annotations.language.grounding import NOT_UNDERSTOOD
+from annotations.language.plans import (
+    ASK,
+    Named,
+    Operator,
+    TaskValue,
+    Trouble,
+    Unresolved,
+    Words,
+)
 from annotations.language.recipes.book import RecipeBook
 from annotations.language.recipes.rows import (
     OPERATOR_WORD,
@@ -48,7 +57,7 @@ from annotations.language.recipes.task_plan import (
     TaskStep,
     task_plan_schema,
 )
-from annotations.language.recipes.values import TaskValue, ids_in, with_results
+from annotations.language.recipes.values import ids_in, renumbered, with_results
 
 MOST_COMMANDS = 3
 MOST_STATES = 20_000  # about half a second; longer commands are done one after the other
@@ -134,6 +143,7 @@ class JointPlan:
 
     plan: TaskPlan
     serves: tuple[tuple[int, ...], ...]
+    waiting: tuple[int, ...]
     interleavings: tuple[Interleaving, ...]
     length_before: float
     length: float
@@ -160,6 +170,8 @@ class JointPlan:
         for problem in plan["problems"]:
             at = problem["step"]
             problem["commands"] = list(self.serves[at - 1]) if at else []
+        for entry, command in zip(plan["unresolved"], self.waiting, strict=True):
+            entry["commands"] = [command]
         return {
             **plan,
             "interleavings": [each.as_json() for each in self.interleavings],
@@ -254,12 +266,14 @@ def join(
     distances = distances or Distances()
     names = [_say_which(number, utterances) for number, _ in enumerate(plans)]
     understood = [not _is_not_understood(each) for each in plans]
-    done = [
-        plan if is_heard or not any(understood) else TaskPlan(())
-        for plan, is_heard in zip(plans, understood, strict=True)
-    ]
+    done = list(plans)
     if len(plans) > 1:
-        done = [_naming_command(plan, name) for plan, name in zip(done, names, strict=True)]
+        done = [_naming_command(plan, name) for plan, name in zip(plans, names, strict=True)]
+    if any(understood):  # the others are only named
+        done = [
+            plan if is_heard else _without_steps(plan)
+            for plan, is_heard in zip(done, understood, strict=True)
+        ]
     commands = [_Command.of(plan, number) for number, plan in enumerate(done, start=1)]
     ending = _ending(book)
     search = _Search(commands, distances, ending)
@@ -281,6 +295,7 @@ def join(
     return JointPlan(
         writer.plan(done),
         writer.serves(),
+        tuple(number for number, plan in enumerate(done, start=1) for _ in plan.unresolved),
         interleavings,
         before.length,
         after.length,
@@ -320,7 +335,21 @@ def _naming_command(plan: TaskPlan, name: str) -> TaskPlan:
         replace(step, arguments=tuple((name, named(value)) for name, value in step.arguments))
         for step in plan.steps
     )
-    return replace(plan, steps=tuple(steps))
+    unresolved = (
+        replace(
+            each,
+            open=tuple(
+                replace(gap, question=question) if gap.question == NOT_UNDERSTOOD else gap
+                for gap in each.open
+            ),
+        )
+        for each in plan.unresolved
+    )
+    return replace(plan, steps=tuple(steps), unresolved=tuple(unresolved))
+
+
+def _without_steps(plan: TaskPlan) -> TaskPlan:
+    return TaskPlan((), (), tuple(renumbered(each, {}, {}) for each in plan.unresolved))
 
 
 @dataclass(frozen=True, slots=True)
@@ -406,9 +435,10 @@ def joint_plan_schema() -> dict[str, Any]:
     step = schema["$defs"]["step"]
     step["required"].append("commands")
     step["properties"]["commands"] = {"description": "The commands that it is for.", **numbers}
-    problem = schema["$defs"]["problem"]
-    problem["required"].append("commands")
-    problem["properties"]["commands"] = {"description": "Those that it is about.", **numbers}
+    for name in ("problem", "unresolved"):
+        about = schema["$defs"][name]
+        about["required"].append("commands")
+        about["properties"]["commands"] = {"description": "Those that it is about.", **numbers}
     length = {"type": "number", "minimum": 0}
     schema["required"] += ["interleavings", "length_before", "length", "unit"]
     schema["required"] += ["is_interleaved", "interleaved", "ends_at", "notes"]
@@ -538,7 +568,7 @@ def _is_bound(pieces: Sequence[Sequence[TaskStep]], at: int) -> bool:
 def _renamed(steps: Sequence[TaskStep], command: int) -> list[TaskStep]:
     """Return steps with numbers and ids that only this command uses."""
     numbers = {step.number: _unique(step.number, command) for step in steps}
-    ids = {each: f"x{_unique(int(each[1:]), command)}" for each in _ids(steps)}
+    ids = {each: _unique_id(each, command) for each in _ids(steps)}
     return [
         replace(
             _with_names(step, numbers, ids),
@@ -551,6 +581,10 @@ def _renamed(steps: Sequence[TaskStep], command: int) -> list[TaskStep]:
 
 def _unique(number: int, command: int) -> int:
     return number * (MOST_COMMANDS + 1) + command
+
+
+def _unique_id(name: str, command: int) -> str:
+    return f"x{_unique(int(name[1:]), command)}"
 
 
 def _ids(steps: Iterable[TaskStep]) -> dict[str, None]:
@@ -806,6 +840,11 @@ class _Writer:
             for command, plan in enumerate(plans, start=1)
             for each in plan.problems
         ]
+        unresolved = (
+            each
+            for command, plan in enumerate(plans, start=1)
+            for each in self._renumber(plan, command, ids)
+        )
         known = {(each.code, each.step) for each in problems}
         hint = "do one of the commands later"
         added = (
@@ -813,7 +852,21 @@ class _Writer:
             for each in self._situation.problems
             if each.code == RecipeTrouble.HANDS_FULL and (each.code, each.step) not in known
         )
-        return TaskPlan(with_texts(steps, step_texts(steps)), (*problems, *added))
+        texts = step_texts(steps)
+        return TaskPlan(with_texts(steps, texts), (*problems, *added), tuple(unresolved))
+
+    def _renumber(
+        self, plan: TaskPlan, command: int, ids: Mapping[str, str]
+    ) -> Iterator[Unresolved]:
+        """Yield what is not resolved of a command, with the numbers and the ids of the joint plan."""
+        numbers = {
+            step.number: self._numbers[_unique(step.number, command)]
+            for step in plan.steps
+            if _unique(step.number, command) in self._numbers
+        }
+        own = {each: ids.get(_unique_id(each, command), each) for each in _ids(plan.steps)}
+        for each in plan.unresolved:
+            yield renumbered(each, {old: [new] for old, new in numbers.items()}, numbers, own)
 
     def _step_of(self, problem: TaskProblem, command: int) -> int:
         """Return the step that a problem is about: the first of its command where it is about all of that one."""

@@ -6,12 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from annotations.language.plans import AT, Described, Operator, StepResult, Words
+from annotations.language.plans import (
+    AT,
+    Described,
+    Operator,
+    StepResult,
+    TaskValue,
+    Words,
+)
 from annotations.language.recipes.habitual_places import UsualPlaces, usual_place
 from annotations.language.recipes.rows import LASTING, EffectKind, Primitive
 from annotations.language.recipes.task_plan import RecipeTrouble, TaskProblem, TaskStep
 from annotations.language.recipes.values import (
-    TaskValue,
     content,
     is_named_person,
     said_place,

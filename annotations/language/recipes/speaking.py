@@ -16,11 +16,12 @@ from annotations.language.plans import (
     Operator,
     Referred,
     StepResult,
+    TaskValue,
     Words,
 )
 from annotations.language.recipes.rows import PLACEHOLDER, EffectKind, Primitive
 from annotations.language.recipes.task_plan import TaskPlan, TaskStep
-from annotations.language.recipes.values import PLACE, TaskValue, content, kinds_of
+from annotations.language.recipes.values import PLACE, content, kinds_of
 
 YOU = "you"
 THE = "the "

@@ -9,9 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from annotations.language.plans import PlanOf, PlanProblem
+from annotations.language.plans import (
+    PlanOf,
+    PlanProblem,
+    TaskValue,
+)
 from annotations.language.recipes.rows import Primitive
-from annotations.language.recipes.values import TaskValue
 
 _FOLDER = Path(__file__).parent
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 from annotations.language.forms import PERSON, PERSON_PREDICATES, THING, kind_of_class
 from annotations.language.plans import (
@@ -16,11 +17,12 @@ from annotations.language.plans import (
     Operator,
     Referred,
     StepResult,
+    TaskValue,
+    Unresolved,
     Value,
     Words,
 )
 
-TaskValue: TypeAlias = "Value | Operator"
 PLACE = "place"
 # The kinds of values beside the tokens of entity classes.
 KINDS = frozenset((PERSON, THING, PLACE, "attribute", "text", "number", "result"))
@@ -147,6 +149,33 @@ def with_results(
     assert owner is None or isinstance(owner, Described)
     new_id = (ids or {}).get(value.id, value.id)
     return Described(new_id, value.text, conditions, value.attribute, owner, value.short_text)
+
+
+def renumbered(
+    unresolved: Unresolved,
+    steps: Mapping[int, Sequence[int]],
+    results: Mapping[int, int],
+    ids: Mapping[str, str] | None = None,
+) -> Unresolved:
+    """Return what is not resolved with other numbers of steps.
+
+    Args:
+        steps: step → those that do what it does.
+        results: step → the one that gives its result.
+        ids: as in ``with_results``.
+    """
+    return replace(
+        unresolved,
+        steps=tuple(
+            sorted({each for number in unresolved.steps for each in steps.get(number, ())})
+        ),
+        arguments=tuple(
+            (name, with_results(value, results, ids)) for name, value in unresolved.arguments
+        ),
+        open=tuple(
+            replace(each, asked_in=results.get(each.asked_in, 0)) for each in unresolved.open
+        ),
+    )
 
 
 def ids_in(value: TaskValue) -> Iterator[str]:

@@ -143,7 +143,10 @@ class _Cut:
         islands = [each.first for each in chosen]
         rests = {each for each in ranges if self._is_rest(each, islands)}
         n_commands = len(ranges) - len(rests) - sum(each.is_held for each in ranges)
-        if n_commands < 2 and (rests or (len(ranges) < 2 and not self._is_counted(ranges))):
+        is_one = n_commands < 2 and len(ranges) < 2 and not self._is_counted(ranges)
+        if n_commands < 2 and rests:
+            is_one = not (islands and self._are_apart(rests)) or self._is_whole(judge)
+        if is_one:
             ranges = [_Range(0, len(self.words), is_held=bool(held))]
         elif judge:
             ranges = self._judge_sentences(ranges, rests, judge)
@@ -153,6 +156,20 @@ class _Cut:
         """Whether no island is in a range, and no reason not to take it for a part of the command beside it."""
         has_island = bisect_left(islands, words.first) < bisect_left(islands, words.last)
         return not (has_island or words.is_held or words.reach)
+
+    def _is_whole(self, judge: Judge | None) -> bool:
+        """Whether a parser understands all words as one command."""
+        text = self.utterance[self.words[0][0] : self.words[-1][1]]
+        return judge is not None and judge([text])[0] is not None
+
+    def _are_apart(self, rests: Iterable[_Range]) -> bool:
+        """Whether what is not understood begins like a command of its own, behind a joint or in another sentence."""
+        return all(
+            (each.first in (0, *self.ends) or self.said[each.first - 1] in _CONJUNCTIONS)
+            and self._is_parted(each.first)
+            and self._is_parted(each.last)
+            for each in rests
+        )
 
     def _judge_sentences(
         self, ranges: Sequence[_Range], rests: Collection[_Range], judge: Judge
@@ -465,6 +482,7 @@ _OPENING = re.compile(
 )
 
 
+_MISSED = -1e6  # nats, for a piece that is not understood
 _END = re.compile(r"[.;!?]\s+|\n+")
 _ITEM = re.compile(r"(?<!\S)\(?([1-9])[.)]\s")  # of a list
 
@@ -495,8 +513,8 @@ def cut_at_joints(
     """Return the commands of an utterance by a parser alone, as a world without a grammar has it.
 
     An utterance that ``judge`` understands as it is, is one command. Of the cuts all of whose pieces are understood,
-    the one with the fewest counts, and of these the one with the highest sum. Where there is none, the utterance
-    comes back as one piece that is not understood.
+    the one with the fewest counts, and of these the one with the highest sum. Where there is none, what stands between
+    two joints may be a piece that is not understood. Where nothing is, the utterance comes back as one piece.
     """
     whole = Piece(0, len(utterance), utterance, False)
     if judge is None:
@@ -519,8 +537,12 @@ def cut_at_joints(
         if (text := utterance[starts[first] : ends[last]].rstrip(_AROUND))
     }
     judged = judge([each.text for each in pieces.values()])
-    best = _best_path(dict(zip(pieces, judged, strict=True)), len(ends), most)
-    return tuple(pieces[place] for place in best) or (whole,)
+    scores = dict(zip(pieces, judged, strict=True))
+    best = _best_path(scores, len(ends), most)
+    if not best and any(score is not None for score in judged):
+        missed = {p: _MISSED for p in pieces if p[0] == p[1] and scores[p] is None}
+        best = _best_path({**scores, **missed}, len(ends), most)
+    return tuple(replace(pieces[p], is_understood=scores[p] is not None) for p in best) or (whole,)
 
 
 def _best_path(

@@ -103,11 +103,13 @@ class CommandDesk:
             self._carry_out(dialogue.raw["task_plan"])
 
     def _carry_out(self, plan: dict[str, Any]) -> None:
-        """Hand over what may be done, where nothing stands in the way of it."""
+        """Hand over what may be done, where nothing stands in the way of it; else ask what is open."""
         if plan["is_executable"]:
             self._act(json.dumps(plan))
         else:
-            self._say(plan["problems"][0]["message"])
+            questions = [gap["question"] for each in plan["unresolved"] for gap in each["open"]]
+            questions += [each["message"] for each in plan["problems"]]
+            self._say(questions[0])
 
     def _forget(self) -> None:
         self._dialogue = self._confirmed = None

@@ -54,12 +54,81 @@ class PlanProblem:
 
 
 @dataclass(frozen=True)
+class SaidWords:
+    """Words of the utterance, in its characters ``start`` to ``end``; None where it does not have them so."""
+
+    text: str
+    start: int | None
+    end: int | None
+
+
+@dataclass(frozen=True)
+class OpenArgument:
+    """What is open in a step: ask ``question``.
+
+    ``argument`` is ``command`` where nothing to do was understood. ``words`` stand there and name nothing. ``likely``
+    is a guess. ``asked_in`` is the step of the plan that asks; None where none does.
+    """
+
+    argument: str
+    question: str
+    entity_class: str
+    words: tuple[SaidWords, ...]
+    likely: str | None
+    asked_in: int | None
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> OpenArgument:
+        return cls(
+            value["argument"],
+            value["question"],
+            value["entity_class"],
+            tuple(SaidWords(each["text"], each["start"], each["end"]) for each in value["words"]),
+            value["likely"],
+            value["asked_in"],
+        )
+
+
+@dataclass(frozen=True)
+class Unresolved:
+    """A step that does not ground. ``steps`` are the numbers of the steps of the plan that wait for it.
+
+    ``arguments`` are what is known, as those of a step; a value of the kind ``open`` stands for what is not. In a
+    joint plan ``commands`` is the one that it is about.
+    """
+
+    steps: tuple[int, ...]
+    action: str
+    predicate: str
+    text: str
+    arguments: dict[str, dict[str, Any]]
+    open: tuple[OpenArgument, ...]
+    commands: tuple[int, ...] = ()
+
+    @classmethod
+    def from_json(cls, value: dict[str, Any]) -> Unresolved:
+        return cls(
+            tuple(value["steps"]),
+            value["action"],
+            value["predicate"],
+            value["text"],
+            value["arguments"],
+            tuple(map(OpenArgument.from_json, value["open"])),
+            tuple(value.get("commands", ())),
+        )
+
+
+@dataclass(frozen=True)
 class Plan:
-    """The steps of a command. An executable plan needs no further answer from a person."""
+    """The steps of a command. An executable plan needs no further answer from a person.
+
+    ``unresolved`` has the steps that wait for one; the others can be done.
+    """
 
     is_executable: bool
     steps: tuple[Step, ...]
     problems: tuple[PlanProblem, ...]
+    unresolved: tuple[Unresolved, ...] = ()
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> Plan:
@@ -67,6 +136,7 @@ class Plan:
             value["is_executable"],
             tuple(map(Step.from_json, value["steps"])),
             tuple(map(PlanProblem.from_json, value["problems"])),
+            tuple(map(Unresolved.from_json, value["unresolved"])),
         )
 
 
@@ -113,6 +183,7 @@ class TaskPlan:
     is_executable: bool
     steps: tuple[TaskStep, ...]
     problems: tuple[PlanProblem, ...]
+    unresolved: tuple[Unresolved, ...] = ()
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> TaskPlan:
@@ -120,6 +191,7 @@ class TaskPlan:
             value["is_executable"],
             tuple(map(TaskStep.from_json, value["steps"])),
             tuple(map(PlanProblem.from_json, value["problems"])),
+            tuple(map(Unresolved.from_json, value["unresolved"])),
         )
 
 

@@ -67,7 +67,7 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             trouble = error.message
     state, language = state_of(row), WorldLanguage.of(row.world)
     has_form = state.phase is not Phase.REPHRASING and bool(row.state["parsed"] != "UNKNOWN")
-    task_plan = task_plan_in(state, language) if has_form else None
+    task_plan = task_plan_in(row, language) if has_form else None
     context = {
         "row": row,
         "task_plan": task_plan and task_plan.as_json(),
@@ -83,7 +83,7 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
         )
         if has_form
         else "",
-        "plan": plan_of(state, language) if has_form else None,
+        "plan": plan_of(row, language).as_json() if has_form else None,
         "offers": state.offers,
         "trouble": trouble,
         "most_text": MOST_CHARACTERS,

@@ -21,6 +21,7 @@ from annotations.web.rest.routes import WorldViewSet
 from parser_service.dialogues.conversation import AnsweredMeanwhile, keep, reply, start
 from parser_service.dialogues.dialogue_json import as_json
 from parser_service.models import Dialogue
+from parser_service.web.serving.plan_fields import PlanField
 
 
 class NewDialogue(Fields):
@@ -74,8 +75,8 @@ class DialogueSerializer(serializers.Serializer[Any]):
     grounded = serializers.CharField()
     reading = serializers.CharField()
     english = serializers.CharField()
-    plan = serializers.DictField(help_text="As docs/reference/plans.md describes it.")
-    task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    plan = PlanField(help_text="As docs/reference/plans.md describes it.")
+    task_plan = PlanField(help_text="As docs/reference/recipes.md describes it.")
     spoken = serializers.CharField(allow_blank=True)
     offers = OfferSerializer(many=True)
     transcript = TurnSerializer(many=True)

@@ -98,7 +98,7 @@ class TaskPlanRoute(WorldRoute):
             form = read_form(sent["form"])
         except LanguageError as error:
             raise refusal_of_text(error, "form") from error
-        task_plan = task_plan_of(form, (), WorldLanguage.of(self.world))
+        task_plan = task_plan_of(form, WorldLanguage.of(self.world))
         if sent["as"] == "xml":
             return tree_answer(task_plan, sent)
         return Response({"task_plan": task_plan.as_json(), "spoken": spoken(task_plan)})

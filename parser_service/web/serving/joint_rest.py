@@ -20,6 +20,7 @@ from annotations.web.rest.routes import WorldRoute
 from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.web.robots.tree_query import TreeQuery, tree_answer
 from parser_service.web.serving.parsing_rest import MOST_KEY
+from parser_service.web.serving.plan_fields import JointPlanField, PlanField
 
 MOST_DISTANCES = 10_000
 MOST_OF_UNIT = 20
@@ -68,7 +69,7 @@ class UnderstoodSerializer(serializers.Serializer[Any]):
     is_unknown = serializers.BooleanField()
     grounded = serializers.CharField(allow_blank=True)
     english = serializers.CharField(allow_blank=True)
-    task_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    task_plan = PlanField(help_text="As docs/reference/recipes.md describes it.")
     spoken = serializers.CharField(allow_blank=True)
     decision = serializers.CharField()
     sureness = serializers.CharField()
@@ -79,7 +80,7 @@ class JointSerializer(serializers.Serializer[Any]):
     """The commands in the order in which they were said, and one plan of all."""
 
     commands = UnderstoodSerializer(many=True)
-    joint_plan = serializers.DictField(help_text="As docs/reference/recipes.md describes it.")
+    joint_plan = JointPlanField(help_text="As docs/reference/recipes.md describes it.")
     spoken = serializers.CharField(allow_blank=True)
 
 

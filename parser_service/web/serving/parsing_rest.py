@@ -34,6 +34,7 @@ from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client
 from parser_service.serving.preparing import MOST_ALTERNATIVES, MOST_CANDIDATES, numbered_lines
+from parser_service.web.serving.plan_fields import JointPlanField, PlanField
 
 MOST_LINES = 5_000  # of a batch that is answered at once
 SHARE_OF_TIME = 0.8  # of REQUEST_SECONDS; then a last line says that the batch breaks off
@@ -160,12 +161,8 @@ class CandidateSerializer(serializers.Serializer[Any]):
     english = serializers.CharField()
     open_slots = OpenSlotSerializer(many=True)
     warnings = serializers.ListField(child=serializers.CharField())
-    plan = serializers.DictField(
-        allow_null=True, help_text="As docs/reference/plans.md describes it."
-    )
-    task_plan = serializers.DictField(
-        allow_null=True, help_text="As docs/reference/recipes.md describes it."
-    )
+    plan = PlanField(allow_null=True, help_text="As docs/reference/plans.md describes it.")
+    task_plan = PlanField(allow_null=True, help_text="As docs/reference/recipes.md describes it.")
     spoken = serializers.CharField(
         allow_blank=True,
         help_text="Of the first candidate what the answer says; of others what the robot would do.",
@@ -223,7 +220,7 @@ class ParseSerializer(OneAnswerSerializer):
     several = OneAnswerSerializer(
         many=True, help_text="The answer to each command, where there are several."
     )
-    joint_plan = serializers.DictField(
+    joint_plan = JointPlanField(
         allow_null=True,
         help_text="One plan of all of them, as docs/reference/recipes.md describes it.",
     )

@@ -44,6 +44,16 @@ def test_a_worker_answers_with_every_chosen_run(runs, annotator, hasty):
     assert [row.answers[str(run.pk)]["answers"][0]["form"] for run in runs] == [DEFAULT, FIND]
 
 
+def test_a_page_that_read_the_row_before_its_answer_asks_for_no_further_job(
+    runs, annotator, hasty
+):
+    row = ask(runs[0].world, annotator, "find me a thing", runs)
+    answer_all(runs[0].world)
+    assert not row.is_answered, "it is as it was read"
+    assert tryout_answers.request_answers(row) is None
+    assert not answer_jobs(runs[0].world).exists()
+
+
 def test_the_newest_text_of_a_person_takes_the_place_of_older_ones(runs, annotator, hasty):
     for text in ("bring", "bring a", "bring a thing"):
         ask(runs[0].world, annotator, text, runs)

@@ -4,6 +4,7 @@ import pytest
 
 from annotations.language.dialogue import ATTEMPTS, PATIENCE, Phase
 from annotations.language.forms import read_form, to_template
+from annotations.language.grounding import NOT_UNDERSTOOD
 from tests.annotations.language.dialogue.robot import BRING, PUT, ROBOT, begin, talk
 
 
@@ -56,7 +57,7 @@ def test_no_asks_for_another_utterance_and_anything_else_for_yes_or_no() -> None
 
 def test_what_is_not_understood_may_be_said_another_way_a_few_times() -> None:
     state = begin("dance", "UNKNOWN")
-    assert state.prompt == "I do not understand that. Please say it another way."
+    assert state.prompt == NOT_UNDERSTOOD
     heard = ROBOT.anonymizer.anonymize("bring tea")
     again = ROBOT.begin(read_form(BRING), heard, before=state)
     assert again.phase is Phase.CONFIRMING

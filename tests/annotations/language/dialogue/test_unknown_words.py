@@ -73,15 +73,22 @@ def test_a_word_that_is_settled_is_offered_for_no_other_slot(answer: str) -> Non
 
 
 def test_of_two_unknown_words_the_second_slot_is_offered_the_one_that_is_left() -> None:
-    asked = begin("bring the flurb to the glim", MOVE)
+    asked = begin("open the flurb and clean the glim", TWO_THINGS)
     assert asked.prompt.startswith("Which object do you mean by “flurb” or “glim”?")
     for answer in ("new", "the flurb"):
         after = ROBOT.reply(asked, answer)
-        assert after.prompt.startswith("Which location do you mean by “glim”?"), answer
+        assert after.prompt.startswith("Which object do you mean by “glim”?"), answer
     other_way = ROBOT.reply(asked, "the glim")
-    assert other_way.prompt.startswith("Which location do you mean by “flurb”?")
+    assert other_way.prompt.startswith("Which object do you mean by “flurb”?")
     unsettled = ROBOT.reply(asked, "the tea")  # for either word
-    assert unsettled.prompt.startswith("Which location do you mean by “glim” or “flurb”?")
+    assert unsettled.prompt.startswith("Which object do you mean by “flurb” or “glim”?")
+
+
+def test_an_unknown_word_behind_a_preposition_of_place_is_a_place_and_no_thing() -> None:
+    asked = begin("bring the flurb to the glim", MOVE)
+    assert asked.prompt.startswith("Which object do you mean by “flurb”?")
+    after = ROBOT.reply(asked, "the tea")
+    assert after.prompt.startswith("Which location do you mean by “glim”?")
 
 
 def test_an_unknown_argument_settles_a_word_too() -> None:

@@ -499,20 +499,3 @@ def test_after_a_question_about_somebody_they_are_meant() -> None:
 def test_a_part_of_a_command_that_is_no_action_is_asked_for(form: str) -> None:
     plan = plan_of(form)
     assert troubles(plan) == ["not_understood"] and not plan.is_executable
-
-
-def test_steps_that_wait_for_an_answer_are_unresolved_and_the_others_stay():
-    going = plan_of(
-        '( sequence ( go " <room> " ) ( find ( lambda $1 e ( person $1 ) ( name $1 " <name> " ) ) ) ( say " hello " ) )'
-    )
-    unresolved = [going.steps[number - 1].predicate for number in going.unresolved]
-    assert unresolved == ["go", "find"]
-    assert "say" in [step.predicate for step in going.steps]
-    bringing = plan_of(
-        '( sequence ( find ( lambda $1 e ( is_a $1 " <object> " ) ) ) ( put it " flurb " ) ( say " hello " ) )'
-    )
-    assert [bringing.steps[number - 1].predicate for number in bringing.unresolved] == [
-        "find",
-        "put",
-    ]
-    assert not plan_of('( say " hello " )').unresolved

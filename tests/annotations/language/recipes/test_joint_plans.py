@@ -417,7 +417,12 @@ def test_two_of_three_are_done_where_one_is_not_understood(missed):
     forms[missed] = "UNKNOWN"
     plans = [task_plan(form) for form in forms]
     joint = join(plans, default_book(), utterances=said)
-    assert joint.plan.is_executable and "ask_operator" not in " ".join(calls(joint.plan))
+    assert "ask_operator" not in " ".join(calls(joint.plan))
+    assert not joint.plan.is_executable  # nothing begins by accident
+    (waiting,) = joint.as_json()["unresolved"]
+    assert (waiting["commands"], waiting["steps"]) == ([missed + 1], [])
+    (gap,) = waiting["open"]
+    assert gap["argument"] == "command" and said[missed] in gap["question"]
     assert {number for each in joint.serves for number in each} == {1, 2, 3} - {missed + 1}
     note = joint.notes[0]
     assert (note.code, note.commands) == (NoteKind.NOT_UNDERSTOOD, (missed + 1,))

@@ -120,9 +120,18 @@ def test_a_command_with_joints_inside_stays_whole():
     assert texts_of(f"{TAKE}, then {GO}") == (TAKE, GO)
 
 
-def test_where_a_piece_is_not_understood_the_utterance_comes_back():
-    said = f"{GO} and then open the door"
-    assert texts_of(said) == (said,)
+def test_what_is_not_understood_is_a_piece_between_joints():
+    said = f"{GO} and then open the door. {TAKE}"
+    pieces = cut_at_joints(said, JUDGE)
+    assert [(each.text, each.is_understood) for each in pieces] == [
+        (GO, True),
+        ("open the door", False),
+        (TAKE, True),
+    ]
+    assert texts_of("open the door and then sit down") == ("open the door and then sit down",)
+
+
+def test_more_commands_than_a_robot_takes_come_back_whole():
     four = f"{GO}. {GO}. {GO}. {GO}."
     assert texts_of(four) == (four,)
 

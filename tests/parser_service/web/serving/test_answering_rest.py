@@ -226,3 +226,20 @@ def test_an_oracle_that_an_older_version_promoted_is_the_one_of_today(tiny, post
     serve()
     answer = ask(post, "find the tea")
     assert (answer["parser"], answer["run"], answer["decision"]) == ("grammar-oracle", None, "act")
+
+
+def test_of_several_commands_what_is_not_understood_is_handed_on(tiny, post):
+    answer = ask(post, "find the tea, asdf the qwer and go to the kitchen")
+    assert (answer["decision"], answer["is_unknown"]) == ("ask", True)
+    joint = answer["joint_plan"]
+    jsonschema.validate(joint, joint_plan_schema())
+    assert joint["steps"] and not joint["is_executable"]
+    (waiting,) = joint["unresolved"]
+    assert (waiting["commands"], waiting["steps"]) == ([2], [])
+    (word,) = waiting["open"][0]["words"]
+    assert word["text"] == answer["several"][1]["utterance"] == "asdf the qwer"
+
+
+def test_what_has_a_condition_is_not_cut_to_what_is_understood(both, post):
+    answer = ask(post, "find the tea. If it rains, go to the kitchen")
+    assert answer["decision"] == "refuse" and not answer["several"]
