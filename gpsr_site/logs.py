@@ -9,9 +9,10 @@ from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Any
 
-# Keys of links, and who somebody is on a crowd market.
+# Keys of links, and all that a crowd market says of somebody, by whatever names.
 SECRET_ADDRESS = re.compile(
     r"(/join/|/password/[^/\s?]+/|[?&](?:PROLIFIC_PID|SESSION_ID|workerId|assignmentId)=)[^/\s?&]+"
+    r"|(/p/[^\s?]*\?)\S+"
 )
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
 
@@ -24,6 +25,15 @@ class HideSecrets(logging.Filter):
         hidden = hide_secrets(message)
         if hidden != message:
             record.msg, record.args = hidden, ()
+        return True
+
+
+class RefusedInOneLine(logging.Filter):
+    """Takes the traceback from what Django refuses, such as an unknown host: that says nothing of this code."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        if record.name.startswith("django.security."):
+            record.exc_info = record.exc_text = None
         return True
 
 
@@ -50,4 +60,4 @@ class JsonLines(logging.Formatter):
 
 def hide_secrets(text: str) -> str:
     """Return a text without the secrets of the links in it."""
-    return SECRET_ADDRESS.sub(r"\1…", text)
+    return SECRET_ADDRESS.sub(r"\1\2…", text)

@@ -386,12 +386,15 @@ LOGGING = {
         "line": {"format": "{asctime} {levelname} {name}: {message}", "style": "{"},
         "json": {"()": "gpsr_site.logs.JsonLines"},
     },
-    "filters": {"secrets": {"()": "gpsr_site.logs.HideSecrets"}},
+    "filters": {
+        "secrets": {"()": "gpsr_site.logs.HideSecrets"},
+        "refusals": {"()": "gpsr_site.logs.RefusedInOneLine"},
+    },
     "handlers": {
         "console": {
             "class": "logging.StreamHandler",
             "formatter": LOG_FORMAT,
-            "filters": ["secrets"],
+            "filters": ["secrets", "refusals"],
         }
     },
     # Writers and batches wait for each other as a rule (gpsr_site.web.thread_shares): a line for each says nothing.

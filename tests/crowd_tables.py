@@ -17,6 +17,7 @@ def results(rows: Iterable[Mapping[str, str]], prompts: Sequence[Sequence[str]] 
 
     ``1`` is short for ``Answer.utterance1``; ``free`` for ``Answer.custom1``, ``worker`` for ``WorkerId``.
     """
+    rows = list(rows)
     numbers = range(1, len(prompts) + 1)
     inputs = {
         f"Input.{name}{number}": text
@@ -27,6 +28,8 @@ def results(rows: Iterable[Mapping[str, str]], prompts: Sequence[Sequence[str]] 
     short |= {"free": "Answer.custom1", "worker": "WorkerId"}
     usual = {"WorkerId": "W1", "AssignmentStatus": "Approved", "WorkTimeInSeconds": "120"}
     usual |= inputs | dict.fromkeys([*short.values(), "Answer.comment"], "") | {"WorkerId": "W1"}
+    if any("AssignmentId" in row for row in rows):
+        usual["AssignmentId"] = ""
     written = io.StringIO()
     table = csv.DictWriter(written, list(usual), lineterminator="\r\n")
     table.writeheader()

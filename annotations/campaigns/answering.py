@@ -49,12 +49,16 @@ def warnings_for(submission: Submission, text: str) -> tuple[RewriteWarning, ...
 
 
 def save_answer(
-    submission: Submission, text: str, seconds: float | None = None, was_pasted: bool = False
+    submission: Submission,
+    text: str,
+    seconds: float | None = None,
+    was_pasted: bool = False,
+    browser: str = "",
 ) -> Submission:
     """Store what was written at a place of a task, with its flags. An empty text empties the place again.
 
     Saving the same twice changes nothing. Who changes what they wrote has looked at the prompt for ``seconds``
-    more, and what was pasted once stays pasted.
+    more, and what was pasted once stays pasted. ``browser`` is the one that is shown the text again.
 
     Raises:
         Refusal: the text is too long or no text, or the task is finished.
@@ -70,7 +74,7 @@ def save_answer(
     _require_changeable(stored)
     if stored.text == wanted:
         return stored
-    stored.text = wanted
+    stored.text, stored.browser = wanted, browser
     stored.was_pasted = stored.was_pasted or was_pasted
     if seconds is not None:
         stored.seconds = (stored.seconds or 0) + seconds
@@ -84,7 +88,15 @@ def save_answer(
         _require_changeable(held.get(pk=submission.pk))
         count_save(stored.contributor)
         stored.read_by_run = None
-        columns = ("text", "was_pasted", "seconds", "answered_at", "flags", "read_by_run")
+        columns = (
+            "text",
+            "browser",
+            "was_pasted",
+            "seconds",
+            "answered_at",
+            "flags",
+            "read_by_run",
+        )
         stored.save(update_fields=columns)
     close_if_full(stored.contributor.campaign)
     return stored

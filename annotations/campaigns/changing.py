@@ -16,6 +16,8 @@ from annotations.models.campaigns import ContributorKind
 CHANGEABLE = (
     *("introduction", "examples", "consent", "thanks", "ends_at", "most_submissions"),
     *("most_per_hour", "price", "currency", "completion_code", "return_url"),
+    *("run_by", "contact", "minutes", "worker_parameter", "assignment_parameter", "frame_origins"),
+    *("screening_question", "screened_out_code", "screened_out_url"),
 )
 
 

@@ -56,8 +56,10 @@ def import_results_of(job: Job, progress: JobProgress) -> dict[str, Any]:
     progress.report(0, "reading the table")
     with kept_uploads(job) as (upload,):
         source = upload.name
-        table, encoding = read_results(upload, job.arguments["encoding"])
-    campaign = _campaign_of(job, job.world, table)
+        chosen = _chosen(job, job.world)
+        parameter = chosen.worker_parameter if chosen else ""
+        table, encoding = read_results(upload, job.arguments["encoding"], parameter)
+    campaign = chosen or new_campaign(job.world, job.arguments["name"], table, job.created_by)
     plan = plan_results(campaign, table, source, progress)
     if plan.is_refused or not plan.contributors:
         return {**plan.report(table), "encoding": encoding}
@@ -67,7 +69,9 @@ def import_results_of(job: Job, progress: JobProgress) -> dict[str, Any]:
     return store_results(plan, table, job.created_by, progress)
 
 
-def read_results(upload: UploadedFile, encoding: str = "") -> tuple[CrowdTable, str]:
+def read_results(
+    upload: UploadedFile, encoding: str = "", worker_parameter: str = ""
+) -> tuple[CrowdTable, str]:
     """Return the table of an upload, with its problems, and the encoding that it was read in.
 
     Raises:
@@ -75,17 +79,18 @@ def read_results(upload: UploadedFile, encoding: str = "") -> tuple[CrowdTable, 
     """
     data = read_one_file(upload, _is_table, MOST_BYTES)
     text, encoding = decode_upload(data, upload.name, encoding)
-    return read_crowd_results(text, upload.name, MOST_CHARACTERS), encoding
+    return read_crowd_results(text, upload.name, MOST_CHARACTERS, worker_parameter), encoding
 
 
 def _is_table(path: str) -> bool:
     return path.lower().endswith(_TABLES)
 
 
-def _campaign_of(job: Job, world: World, table: CrowdTable) -> Campaign:
+def _chosen(job: Job, world: World) -> Campaign | None:
+    """Return the campaign that the results are of; None where they get a new one."""
     key = job.arguments["campaign"]
     if key is None:
-        return new_campaign(world, job.arguments["name"], table, job.created_by)
+        return None
     campaign = world.campaigns.filter(pk=key).first()
     if campaign is None:
         raise LanguageError("the campaign is no longer here", hint="choose another one")

@@ -109,6 +109,7 @@ class ResultPlan:
                 "free_commands": kinds[True],
                 "prompts": len(self.prompts),
                 "rejected": table.rejected,
+                "unfinished": table.unfinished,
                 "repeated": self.repeated,
                 "empty": table.empty,
                 "unmatched": self.unmatched,
@@ -175,11 +176,10 @@ def plan_results(
     for number, assignment in enumerate(table.assignments):
         if number % CHECK_EVERY == 0:
             progress.report(0.1 + 0.8 * number / len(table.assignments), "looking at the answers")
-        digest = _digest(campaign, assignment)
-        if digest in seen:
+        if not seen.isdisjoint(_digests(campaign, assignment)):
             plan.repeated += 1
             continue
-        seen.add(digest)
+        seen.add(_digests(campaign, assignment)[0])
         matched: list[tuple[_Prompt, str]] = []
         for rewrite in assignment.rewrites:
             prompt = prompts.find(rewrite, assignment.line)
@@ -234,8 +234,8 @@ def store_results(
         contributors: list[Contributor] = []
         new: list[int] = []
         for place, each in enumerate(plan.contributors):
-            digest = _digest(campaign, each.assignment)
-            if digest in known:
+            digests = _digests(campaign, each.assignment)
+            if not known.isdisjoint(digests):
                 plan.repeated += 1
                 continue
             new.append(place)
@@ -247,7 +247,7 @@ def store_results(
                     kind=ContributorKind.FILE,
                     pseudonym=pseudonym,
                     attempt=attempts[pseudonym],
-                    settings={ASSIGNMENT: digest},
+                    settings={ASSIGNMENT: digests[0]},
                     began_at=now,
                     finished_at=now,
                 )
@@ -303,11 +303,16 @@ def _known_assignments(campaign: Campaign) -> set[str]:
     return {settings.get(ASSIGNMENT, "") for settings in rows.values_list("settings", flat=True)}
 
 
-def _digest(campaign: Campaign, assignment: Assignment) -> str:
-    """Return the hash by which an assignment is known again: of who did it, and of all that they wrote."""
+def _digests(campaign: Campaign, assignment: Assignment) -> list[str]:
+    """Return the hashes by which an assignment is known again; the first one is stored.
+
+    That is of the market's id of it, where the table has one. Without it, and for what was stored before ids were
+    read, it is of who did it and of all that they wrote.
+    """
     answers = [(each.command, each.grounded_form, each.text) for each in assignment.rewrites]
-    content = [assignment.market, assignment.worker, answers, assignment.free_commands]
-    return pseudonym_of(campaign, ASSIGNMENT, json.dumps(content))
+    written = [assignment.market, assignment.worker, answers, assignment.free_commands]
+    contents = [[assignment.market, assignment.key], written] if assignment.key else [written]
+    return [pseudonym_of(campaign, ASSIGNMENT, json.dumps(each)) for each in contents]
 
 
 @dataclass(slots=True)

@@ -102,6 +102,13 @@ def begin(campaign: Campaign, pseudonym: str, kind: str = ContributorKind.PERSON
     return contributor
 
 
+def preview_places(campaign: Campaign) -> list[Submission]:
+    """Return the places of a task that nobody does; nothing is stored, and nothing counts as given."""
+    prompts = list(campaign.prompts.filter(check_words="")[: campaign.task_size])
+    checks = list(campaign.prompts.exclude(check_words=""))
+    return _places(Contributor(campaign=campaign), prompts, checks)
+
+
 def choose_prompts(campaign: Campaign, size: int, pseudonym: str = "") -> list[CampaignPrompt]:
     """Return ``size`` different prompts, or all that there are, in random order, as a ``Dealer`` deals them.
 
@@ -187,7 +194,7 @@ def _places(
     for number, prompt in enumerate(prompts, start=1):
         places.append((SubmissionKind.REWRITE, prompt))
         if checks and number % campaign.check_every == 0:
-            check = checks[(contributor.pk + number // campaign.check_every) % len(checks)]
+            check = checks[((contributor.pk or 0) + number // campaign.check_every) % len(checks)]
             places.append((SubmissionKind.CHECK, check))
     places += [(SubmissionKind.FREE, None)] * campaign.free_commands
     return [

@@ -20,6 +20,7 @@ MOST_CHARACTERS_OF_TEXT = 8_000  # of a text that contributors read
 LONGEST_CAMPAIGN_NAME = 60
 LONGEST_PSEUDONYM = 32
 MOST_PLACES = 400  # of a task
+SECONDS_FOR_A_PLACE = 30  # about what people take; docs/guides/campaigns.md
 # Who has begun may finish for so long after a campaign was closed or its time was up.
 GRACE = timedelta(days=1)
 
@@ -114,7 +115,11 @@ class Campaign(models.Model):
     paraphrases. ``taboo_words`` says how many of a form's most used words are shown as not to be used;
     ``check_every`` plants a check among so many prompts (0: none). It ends when it is closed, at ``ends_at``,
     or with ``most_submissions``. At most ``most_per_hour`` tasks are begun by the link. ``price`` is what a task costs,
-    in ``currency``. ``key`` is the secret part of the link; it is empty where the link was revoked. ``version``
+    in ``currency``. ``run_by``, ``contact`` and ``minutes`` stand beside the consent. A crowd market sends who comes
+    and for what as ``worker_parameter`` and ``assignment_parameter``; if these are empty, by known names.
+    Its pages may frame this one if they are of ``frame_origins``, separated by blanks. Who answers no to
+    ``screening_question`` gets ``screened_out_code`` and ``screened_out_url``, and no task.
+    ``key`` is the secret part of the link; it is empty where the link was revoked. ``version``
     counts from 1 how often its texts, its end and its payment were changed.
     """
 
@@ -139,6 +144,15 @@ class Campaign(models.Model):
     currency = models.CharField(max_length=8, blank=True)
     completion_code = models.CharField(max_length=40, blank=True)
     return_url = models.URLField(max_length=500, blank=True)
+    run_by = models.CharField(max_length=200, blank=True, default="", db_default="")
+    contact = models.CharField(max_length=200, blank=True, default="", db_default="")
+    minutes = models.PositiveSmallIntegerField(null=True, blank=True)
+    worker_parameter = models.CharField(max_length=40, blank=True, default="", db_default="")
+    assignment_parameter = models.CharField(max_length=40, blank=True, default="", db_default="")
+    frame_origins = models.CharField(max_length=500, blank=True, default="", db_default="")
+    screening_question = models.CharField(max_length=300, blank=True, default="", db_default="")
+    screened_out_code = models.CharField(max_length=40, blank=True, default="", db_default="")
+    screened_out_url = models.URLField(max_length=500, blank=True, default="", db_default="")
     ends_at = models.DateTimeField(null=True, blank=True)
     most_submissions = models.PositiveIntegerField(null=True, blank=True)
     most_per_hour = models.PositiveIntegerField(default=1_000)
@@ -177,6 +191,17 @@ class Campaign(models.Model):
     def is_over(self) -> bool:
         """Whether nobody can begin any more."""
         return self.ended_at is not None
+
+    @property
+    def checks(self) -> int:
+        """How many planted checks a task has."""
+        return self.task_size // self.check_every if self.check_every else 0
+
+    @property
+    def expected_minutes(self) -> int:
+        """About how long a task takes."""
+        places = self.task_size + self.checks + self.free_commands
+        return self.minutes or max(1, round(places * SECONDS_FOR_A_PLACE / 60))
 
     @property
     def grace_ends_at(self) -> datetime | None:
@@ -297,7 +322,8 @@ class SubmissionQuerySet(models.QuerySet["Submission"]):
 class Submission(models.Model):
     """One place of a contributor's task, and what they wrote there; ``text`` is empty until then.
 
-    ``raw`` is the reply of a model that the text was read from. ``seconds`` is how long the prompt was looked
+    ``raw`` is the reply of a model that the text was read from. ``browser`` is the one that it was written in: a random
+    number, without which nobody is shown the text on a public page. ``seconds`` is how long the prompt was looked
     at. ``flags`` are rows of ``{"code", "evidence"}``; ``read_by_run`` is the number of the run that was last asked
     what the text means. What was accepted is a ``paraphrase``, or, as a free command, an ``utterance``.
     """
@@ -314,6 +340,7 @@ class Submission(models.Model):
     )
     text = models.TextField(blank=True)
     raw = models.TextField(blank=True)
+    browser = models.CharField(max_length=32, blank=True, default="", db_default="")
     seconds = models.FloatField(null=True, blank=True)
     was_pasted = models.BooleanField(default=False)
     flags = models.JSONField(default=list, blank=True)

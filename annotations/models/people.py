@@ -8,7 +8,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from django.contrib.auth.models import AbstractUser
+from django.contrib.auth.models import AbstractUser, UserManager
 from django.contrib.sessions.backends.db import SessionStore as DatabaseStore
 from django.contrib.sessions.base_session import AbstractBaseSession
 from django.db import models, transaction
@@ -17,8 +17,39 @@ from django.utils import timezone
 from annotations.models.short_texts import ShortTextField
 
 
+class Accounts(UserManager["User"]):
+    """Accounts, which are known by their names in any case: who is called Carla logs in as carla."""
+
+    use_in_migrations = False
+
+    def alike(self, name: str) -> list[User]:
+        """Return the accounts called ``name`` in any case."""
+        wanted = User.normalize_username(name)
+        # SQLite knows the case of ASCII letters alone: the usual spellings of others are looked up.
+        spellings = {wanted, wanted.lower(), wanted.upper(), wanted.title(), wanted.capitalize()}
+        rows = self.filter(
+            models.Q(username__iexact=wanted) | models.Q(username__in=sorted(spellings))
+        )
+        return list(rows.order_by("pk"))
+
+    def named(self, name: str) -> User | None:
+        """Return the account called ``name``, else the only one whose name differs in case alone."""
+        rows = self.alike(name)
+        exact = [row for row in rows if row.username == User.normalize_username(name)]
+        return exact[0] if exact else rows[0] if len(rows) == 1 else None
+
+    def get_by_natural_key(self, username: str | None) -> User:
+        """Return the account that somebody logs in to by this name. Raises DoesNotExist."""
+        account = self.named(username or "")
+        if account is None:
+            raise User.DoesNotExist
+        return account
+
+
 class User(AbstractUser):
     """A person with an account. What they may do is said by their memberships, per world."""
+
+    objects = Accounts()
 
     if TYPE_CHECKING:
         _password: str | None  # the new one, until it is saved

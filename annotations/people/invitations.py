@@ -80,6 +80,8 @@ def sign_up(invitation: Invitation, name: str, password: str) -> User:
         with transaction.atomic():
             user = User.objects.create_user(name, password=password)
             join(invitation, user)
+            if len(User.objects.alike(name)) > 1:
+                raise NameTaken
     except IntegrityError as error:
         raise NameTaken from error
     return user

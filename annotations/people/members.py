@@ -65,7 +65,8 @@ def admins_of(world: World) -> list[str]:
 
 def find_account(name: str) -> User | None:
     """Return the account called ``name`` that can log in, or None."""
-    return User.objects.filter(username=User.normalize_username(name), is_active=True).first()
+    account = User.objects.named(name)
+    return account if account is not None and account.is_active else None
 
 
 @transaction.atomic

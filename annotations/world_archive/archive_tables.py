@@ -131,13 +131,13 @@ OUR_TABLES = (
     ArchiveTable("guidelines", Guidelines, "world"),
     ArchiveTable("forms", LogicalForm, "world"),
     ArchiveTable("commands", Command, "world", {"template": "templates", "logical_form": "forms"}),
-    # The link of a campaign is of one site, where the copy gets another one; its code is a secret.
+    # The link of a campaign is of one site, where the copy gets another one; its codes are secrets.
     ArchiveTable(
         "campaigns",
         Campaign,
         "world",
         people=("created_by",),
-        left_out=("key", "completion_code"),
+        left_out=("key", "completion_code", "screened_out_code"),
         unreviewed={"contributors__kind": ContributorKind.MODEL},
     ),
     ArchiveTable(
@@ -177,7 +177,7 @@ OUR_TABLES = (
             "utterance": "utterances",
         },
         people=("decided_by",),
-        left_out=("read_by_run",),
+        left_out=("read_by_run", "browser"),
         utterance="utterance",
         unreviewed=NONE_OF_THEM,
     ),

@@ -14,12 +14,15 @@ class CompressTexts(GZipMiddleware):
     """Compresses pages and answers of REST, with random bytes against guessing secrets by length (BREACH).
 
     Answers that are sent in pieces stay as they are: a reader of JSON lines wants each as soon as it is
-    there, and archives and Parquet are compressed already. Static files are WhiteNoise's.
+    there, and archives and Parquet are compressed already. So does one row with its ``ETag``, which would become weak:
+    no write could name its version by that. Static files are WhiteNoise's.
     """
 
     def process_response(
         self, request: HttpRequest, response: HttpResponseBase
     ) -> HttpResponseBase:
-        if response.streaming or not TEXT.match(response.get("Content-Type", "")):
+        kind = response.get("Content-Type", "")
+        is_row = response.has_header("ETag") and kind.startswith("application/json")
+        if response.streaming or is_row or not TEXT.match(kind):
             return response
         return super().process_response(request, response)

@@ -6,6 +6,8 @@ import re
 import sys
 from typing import TypeGuard
 
+from django.conf import settings
+from django.core.exceptions import DisallowedHost
 from django.db import InterfaceError, OperationalError
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
@@ -13,6 +15,7 @@ from django.shortcuts import render
 from annotations.background.failures import DAMAGED, disk_trouble, is_damaged
 from annotations.models import World
 from annotations.people.access import WorldRequest
+from annotations.people.local_names import is_local_name
 from annotations.people.members import admins_of
 from annotations.rows.clashes import MADE_MEANWHILE, is_clash
 from annotations.web.not_found import say_missing, where_to_look
@@ -20,6 +23,8 @@ from gpsr_site.web.refusals import refuse
 
 WORLD_ADDRESS = re.compile(r"^/w/(?P<world>[-\w]+)/")
 RETRY_SECONDS = 10
+# How Django's reasons begin where a form does not come from the address that the site knows itself by.
+OTHER_ADDRESS = ("Origin checking failed", "Referer checking failed")
 # SQLSTATEs of a server that is away, overloaded, stopping, or too slow, and of two that waited for each
 # other (PostgreSQL, appendix A).
 OUTAGE_CODES = re.compile(r"08...|40P01|53(?!100)...|55P03|57014|57P0.|58...")
@@ -28,6 +33,12 @@ OUTAGE_WORDS = re.compile(r"locked|unable to open|disk I/O", re.IGNORECASE)
 
 def bad_request(request: HttpRequest, exception: Exception) -> HttpResponse:
     """Answer 400: the request cannot be read, or its header ``Host`` is not in ``ALLOWED_HOSTS``."""
+    if isinstance(exception, DisallowedHost):
+        sentence = (
+            f"This site does not answer under the name in the address of this page.{_names_for(request)} Whoever "
+            "runs it adds a name to the variable ALLOWED_HOSTS."
+        )
+        return refuse(request, 400, "The site has another name", sentence)
     return refuse(
         request,
         400,
@@ -108,6 +119,16 @@ def server_error(request: HttpRequest) -> HttpResponse:
 
 def csrf_failure(request: HttpRequest, reason: str = "") -> HttpResponse:
     """Answer 403 for a form that does not come from a page of this site, or from one that is too old."""
+    if reason.startswith(OTHER_ADDRESS):
+        return refuse(
+            request,
+            403,
+            "This form comes from another address",
+            f"Your browser says that the form stands at {_origin_of(request)}. The site knows itself as "
+            f"{request.scheme}://{request.get_host()}. Open it under that address. If a proxy stands between, "
+            "whoever runs the site sets HTTPS=true where the proxy speaks HTTPS, and lets it hand on the header "
+            "Host; a name is added to ALLOWED_HOSTS, any other address to CSRF_TRUSTED_ORIGINS.",
+        )
     return refuse(
         request,
         403,
@@ -116,6 +137,20 @@ def csrf_failure(request: HttpRequest, reason: str = "") -> HttpResponse:
         "reload the page and send it again.",
         "form_expired",
     )
+
+
+def _origin_of(request: HttpRequest) -> str:
+    """Return where a browser says that a form stands, without what follows the name of a page."""
+    headers = request.headers
+    said = headers.get("Origin") or headers.get("Referer") or "an address that it does not tell"
+    return "/".join(said[:200].split("/")[:3])
+
+
+def _names_for(request: HttpRequest) -> str:
+    """Return a sentence with the names of the site, for who asks from its own computer; empty for others."""
+    if not is_local_name(str(request.META.get("REMOTE_ADDR", ""))):
+        return ""
+    return f" It answers as {', '.join(settings.ALLOWED_HOSTS)}."
 
 
 def is_outage(error: BaseException | None) -> bool:

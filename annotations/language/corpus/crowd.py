@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
@@ -20,10 +20,21 @@ MOST_COLUMNS = 2_000
 MOST_OF_FORMS = 5_000_000  # characters of different forms: some 20 s of reading
 # Answers of one assignment are compared with each other.
 _MOST_NUMBERED = {"answer.utterance": 100, "answer.custom": 20}
-LONGEST_WORKER = 100  # characters of somebody's id
 MOST_SECONDS = 24 * 3600  # who worked for longer was away
 # What the column with somebody's id is called here, and what links to a campaign call it.
-_WORKERS = {"workerid": "workerId", "prolific_pid": "PROLIFIC_PID"}
+_WORKERS = {
+    "workerid": "workerId",
+    **dict.fromkeys(("prolific_pid", "participant id", "participant_id"), "PROLIFIC_PID"),
+}
+# What the columns with the market's id of what somebody did, and with its state, are called.
+_ASSIGNMENTS = ("assignmentid", "submission id", "submission_id", "session_id")
+_STATES = ("assignmentstatus", "status")
+_REJECTED = {"rejected"}
+# Of work that somebody gave back, or that was never handed in; without blanks and signs.
+_UNFINISHED = {
+    *("returned", "timedout", "abandoned", "expired", "screenedout", "cancelled", "canceled"),
+    *("active", "reserved", "incomplete", "inprogress", "started", "partial", "noconsent"),
+}
 _NUMBERED = re.compile(
     r"(?P<name>input\.command|input\.parse_ground|input\.parse|answer\.utterance|answer\.custom)"
     r"(?P<number>\d{1,3})"
@@ -54,13 +65,15 @@ class CrowdRewrite:
 class Assignment:
     """What one person did once.
 
-    ``market`` is the name under which links have the id ``worker``, which nobody stores. ``seconds`` are those of
-    all answers together, None where they are not known.
+    ``market`` is the name under which links have the id ``worker``. ``key`` is the market's id of the assignment, empty
+    where the table has none. Nobody stores the two. ``seconds`` are those of all answers together, None where they
+    are not known.
     """
 
     line: int
     market: str
     worker: str = field(repr=False)
+    key: str = field(default="", repr=False)
     seconds: float | None = None
     rewrites: tuple[CrowdRewrite, ...] = ()
     free_commands: tuple[str, ...] = ()
@@ -68,27 +81,32 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class CrowdTable:
-    """A table of results. ``rejected`` assignments and empty ones are only counted, and so are ``comments``.
+    """A table of results. ``rejected``, ``unfinished`` and empty assignments are only counted, and so are ``comments``.
 
     The column of a problem counts the cells of its row from 1.
     """
 
     assignments: tuple[Assignment, ...] = ()
     rejected: int = 0
+    unfinished: int = 0
     empty: int = 0
     comments: int = 0
     problems: tuple[Problem, ...] = ()
 
 
-def read_crowd_results(text: str, source: str, longest: int) -> CrowdTable:
+def read_crowd_results(
+    text: str, source: str, longest: int, worker_parameter: str = ""
+) -> CrowdTable:
     """Read a table with ``WorkerId``, ``Input.command1``, ``Answer.utterance1`` and so on.
 
     Its cells are separated by commas, semicolons or tabs, or as Excel's line ``sep=;`` says. Rows whose
-    ``AssignmentStatus`` is Rejected, blank rows and empty answers are left out. Errors are returned, not raised.
+    ``AssignmentStatus`` is Rejected, or says that they were given back or timed out, blank rows and empty answers are
+    left out. Errors are returned, not raised.
 
     Args:
         text: with ``\\n`` for every line end.
         longest: characters of an answer; a longer one is left out with a warning.
+        worker_parameter: what links to the campaign call somebody's id; a column of that name has it, too.
     """
     declared = _DECLARED.match(text)
     if declared:
@@ -97,7 +115,7 @@ def read_crowd_results(text: str, source: str, longest: int) -> CrowdTable:
     delimiter = declared[1] if declared else max(_DELIMITERS, key=head.count)
     lines = (match[0] for match in _LINE.finditer(text))
     rows = csv.reader(lines, delimiter=delimiter, strict=True)
-    reader = _Reader(source, longest)
+    reader = _Reader(source, longest, worker_parameter)
     try:
         reader.read_head(next(filter(None, rows), []), rows.line_num)
         begun = rows.line_num + 1
@@ -117,16 +135,19 @@ def read_crowd_results(text: str, source: str, longest: int) -> CrowdTable:
 class _Reader:
     """Reads the rows of one table."""
 
-    def __init__(self, source: str, longest: int) -> None:
+    def __init__(self, source: str, longest: int, worker_parameter: str) -> None:
         self.problems: list[Problem] = []
         self._source, self._longest = source, longest
         self._names: dict[str, int] = {}  # in lower case → cell
         self._width = 0
-        self._worker = ""
+        self._workers = {**_WORKERS}
+        if worker_parameter:
+            self._workers = {worker_parameter.lower(): worker_parameter, **_WORKERS}
+        self._worker = self._assignment = self._state = ""
         self._numbered: dict[str, list[tuple[str, int]]] = {}  # name → number and cell
         self._assignments: list[Assignment] = []
         self._characters = 0
-        self._answers = self._rejected = self._empty = self._comments = 0
+        self._answers = self._rejected = self._unfinished = self._empty = self._comments = 0
         self._forms: dict[str, str | LanguageError] = {}  # as it is written → canonical
         self._commands: dict[str, str] = {}
 
@@ -154,7 +175,8 @@ class _Reader:
         if not {"answer.utterance", "answer.custom"} & self._numbered.keys():
             hint = "results have WorkerId, Input.command1, Answer.utterance1 and so on"
             raise LanguageError("this is no table of results", place, hint)
-        self._worker = next((name for name in _WORKERS if name in self._names), "")
+        self._worker = self._first_of(self._workers)
+        self._assignment, self._state = self._first_of(_ASSIGNMENTS), self._first_of(_STATES)
         if not self._worker:
             hint = "it says who answered, and becomes a pseudonym"
             raise LanguageError("there is no column WorkerId", place, hint)
@@ -174,15 +196,16 @@ class _Reader:
             hint = "put quotation marks around cells with a delimiter or a quotation mark in them"
             self.problems.append(error_at(Position(self._source, line), message, hint))
             return
-        if self._cell(cells, "assignmentstatus").lower() == "rejected":
-            self._rejected += 1
+        state = re.sub(r"[^a-z]", "", self._cell(cells, self._state).lower())
+        if state in _REJECTED | _UNFINISHED:
+            self._rejected += state in _REJECTED
+            self._unfinished += state in _UNFINISHED
             return
         worker = self._cell(cells, self._worker)
-        if not worker or len(worker) > LONGEST_WORKER:
+        if not worker:
             place = Position(self._source, line, self._names[self._worker] + 1)
-            what = "has more than 100 characters" if worker else "is empty"
             hint = "write who answered, or delete the row"
-            self.problems.append(error_at(place, f"WorkerId {what}", hint))
+            self.problems.append(error_at(place, "WorkerId is empty", hint))
             return
         rewrites = tuple(self._rewrites(cells, line))
         free = tuple(self._free_commands(cells, line))
@@ -196,18 +219,23 @@ class _Reader:
         if not rewrites and not free:
             self._empty += 1
             return
-        market = _WORKERS[self._worker]
+        market, key = self._workers[self._worker], self._cell(cells, self._assignment)
         seconds = self._seconds(cells, line)
-        self._assignments.append(Assignment(line, market, worker, seconds, rewrites, free))
+        self._assignments.append(Assignment(line, market, worker, key, seconds, rewrites, free))
 
     def table(self) -> CrowdTable:
         return CrowdTable(
             tuple(self._assignments),
             self._rejected,
+            self._unfinished,
             self._empty,
             self._comments,
             tuple(sorted(self.problems)),
         )
+
+    def _first_of(self, names: Iterable[str]) -> str:
+        """Return the first of ``names`` that a column has; empty where none has."""
+        return next((name for name in names if name in self._names), "")
 
     def _cell(self, cells: Sequence[str], name: str) -> str:
         at = self._names.get(name)

@@ -6,8 +6,9 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
-from annotations.models import ApiToken, Scope, User
+from annotations.models import ApiToken, Scope
 from annotations.people.audit_log import record_command
+from annotations.people.members import find_account
 
 
 class Command(BaseCommand):
@@ -20,7 +21,7 @@ class Command(BaseCommand):
         parser.add_argument("--scope", choices=Scope.values, default=Scope.READ)
 
     def handle(self, *args: Any, **options: Any) -> None:
-        user = User.objects.filter(username=options["username"], is_active=True).first()
+        user = find_account(options["username"])
         if user is None:
             raise CommandError(
                 f"There is no active account {options['username']!r}. "

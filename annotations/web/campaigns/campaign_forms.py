@@ -9,6 +9,7 @@ import django_filters
 from django import forms
 from django.utils import timezone
 
+from annotations.campaigns.addresses import BadAddress, origins_in, require_public_address
 from annotations.campaigns.changing import CHANGEABLE, has_consents
 from annotations.campaigns.launching import PromptChoice
 from annotations.language.decoding import ENCODINGS
@@ -29,6 +30,8 @@ MOST_PROMPTS_PER_FORM = 20
 MOST_REWRITES, MOST_FREE_COMMANDS = 100, 20
 MOST_SUBMISSIONS = 1_000_000
 MOST_TASKS_PER_HOUR = 100_000
+MOST_MINUTES = 1_000
+PARAMETER = r"[A-Za-z][A-Za-z0-9_.-]{0,39}"  # of an address
 INTRODUCTION = (
     "You will see commands that somebody could give to a robot at home. Say each of them in your own words: "
     "use other words or another order, but ask for the same. Write as you would speak."
@@ -52,6 +55,28 @@ def text_field(label: str, initial: str) -> forms.CharField:
         max_length=MOST_CHARACTERS_OF_TEXT,
         strip=False,
         widget=forms.Textarea(attrs={"rows": 4}),
+    )
+
+
+def line_field(label: str, most: int, help_text: str) -> forms.CharField:
+    return forms.CharField(label=label, required=False, max_length=most, help_text=help_text)
+
+
+def address_field(label: str, help_text: str) -> forms.URLField:
+    return forms.URLField(
+        label=label, required=False, max_length=500, assume_scheme="https", help_text=help_text
+    )
+
+
+def parameter_field(label: str, help_text: str) -> forms.RegexField:
+    return forms.RegexField(
+        PARAMETER,
+        label=label,
+        required=False,
+        help_text=help_text,
+        error_messages={
+            "invalid": "Write the name of a parameter, such as participant_id: letters, digits and _ . -"
+        },
     )
 
 
@@ -124,16 +149,33 @@ class CampaignForm(forms.Form):
         help_text="Empty: people are not paid.",
     )
     currency = forms.CharField(required=False, max_length=8, initial="EUR")
-    completion_code = forms.CharField(
-        label="Completion code", required=False, max_length=40, help_text="Shown at the end."
-    )
-    return_url = forms.URLField(
-        label="Link back",
+    run_by = line_field("Who runs it", 200, "Stands beside the consent.")
+    contact = line_field("Whom to write to", 200, "A mail address, for questions and complaints.")
+    minutes = forms.IntegerField(
+        label="Minutes",
         required=False,
-        max_length=500,
-        assume_scheme="https",
-        help_text="Where the crowd market wants people back.",
+        min_value=1,
+        max_value=MOST_MINUTES,
+        help_text="of one task. Empty: half a minute for each command.",
     )
+    completion_code = line_field("Completion code", 40, "Shown at the end.")
+    return_url = address_field("Link back", "Where the crowd market wants people back.")
+    worker_parameter = parameter_field(
+        "Parameter with who comes", "Empty: PROLIFIC_PID or workerId."
+    )
+    assignment_parameter = parameter_field(
+        "Parameter with the assignment", "Empty: assignmentId or SESSION_ID."
+    )
+    frame_origins = line_field(
+        "Sites that may frame it",
+        500,
+        "Such as https://worker.mturk.com https://workersandbox.mturk.com; empty: none.",
+    )
+    screening_question = line_field(
+        "Question before the task", 300, "Who answers no gets no task. Empty: none is asked."
+    )
+    screened_out_code = line_field("Code for who is not taken", 40, "Shown to who answers no.")
+    screened_out_url = address_field("Link back for who is not taken", "Empty: none.")
     allows_model_help = forms.BooleanField(label="People may use a language model", required=False)
     allows_retake = forms.BooleanField(label="People may do more than one task", required=False)
     seed = number_field("Seed", 0, 2**31 - 1, "The same seed draws the same prompts.")
@@ -150,7 +192,11 @@ class CampaignForm(forms.Form):
     WHAT = ("balance", "prompts_per_form", "wording", "taboo_words", "check_every", "seed")
     END = (
         *("ends_at", "most_submissions", "most_per_hour", "price", "currency"),
-        *("completion_code", "return_url"),
+        *("minutes", "run_by", "contact"),
+    )
+    MARKET = (
+        *("completion_code", "return_url", "worker_parameter", "assignment_parameter"),
+        *("frame_origins", "screening_question", "screened_out_code", "screened_out_url"),
     )
     MAY = ("allows_model_help", "allows_retake")
     TEXTS = ("introduction", "examples", "consent", "thanks")
@@ -176,6 +222,18 @@ class CampaignForm(forms.Form):
         if end <= timezone.now():
             raise forms.ValidationError("This day is over. Choose a later one.")
         return end
+
+    def clean_return_url(self) -> str:
+        return public_address(self.cleaned_data["return_url"])
+
+    def clean_screened_out_url(self) -> str:
+        return public_address(self.cleaned_data["screened_out_url"])
+
+    def clean_frame_origins(self) -> str:
+        try:
+            return origins_in(self.cleaned_data["frame_origins"])
+        except BadAddress as error:
+            raise forms.ValidationError(error.message) from None
 
     @property
     def choice(self) -> PromptChoice:
@@ -204,12 +262,26 @@ class CampaignForm(forms.Form):
         return self.group(self.END)
 
     @property
+    def market(self) -> list[forms.BoundField]:
+        return self.group(self.MARKET)
+
+    @property
     def may(self) -> list[forms.BoundField]:
         return self.group(self.MAY)
 
     @property
     def texts(self) -> list[forms.BoundField]:
         return self.group(self.TEXTS)
+
+
+def public_address(address: str) -> str:
+    """Return an address that people may be sent to, or none. Raises ValidationError."""
+    try:
+        if address:
+            require_public_address(address)
+    except BadAddress as error:
+        raise forms.ValidationError(error.message) from None
+    return address
 
 
 class CampaignChangeForm(CampaignForm):

@@ -39,10 +39,12 @@ from annotations.web.campaigns.campaign_forms import (
     EXAMPLES,
     INTRODUCTION,
     MOST_FREE_COMMANDS,
+    MOST_MINUTES,
     MOST_PROMPTS_PER_FORM,
     MOST_REWRITES,
     MOST_SUBMISSIONS,
     MOST_TASKS_PER_HOUR,
+    PARAMETER,
     THANKS,
     CampaignChangeForm,
     CampaignFilters,
@@ -84,6 +86,8 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
             *("id", "name", "link", "is_over", "wording", "balance", "task_size", "free_commands"),
             *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
             *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
+            *("run_by", "contact", "minutes", "worker_parameter", "assignment_parameter"),
+            *("frame_origins", "screening_question", "screened_out_code", "screened_out_url"),
             *("most_submissions", "most_per_hour", "seed", "introduction", "examples"),
             *("consent", "thanks", "people", "finished", "answers", "created_by"),
             *("created_at", "closed_at", "grace_ends_at", "version"),
@@ -99,7 +103,39 @@ class MarkdownField(serializers.CharField):
         super().__init__(allow_blank=True, trim_whitespace=False, **options)
 
 
-class NewCampaign(Fields):
+class OfMarket(Fields):
+    """What a crowd market and its people want to know; nothing of it is needed."""
+
+    currency = LineField(max_length=8, allow_blank=True, required=False)
+    completion_code = LineField(max_length=40, allow_blank=True, required=False)
+    return_url = serializers.URLField(
+        max_length=500,
+        allow_blank=True,
+        required=False,
+        help_text="https; {assignment} is filled in",
+    )
+    run_by = LineField(max_length=200, allow_blank=True, required=False)
+    contact = LineField(max_length=200, allow_blank=True, required=False)
+    minutes = serializers.IntegerField(
+        min_value=1, max_value=MOST_MINUTES, allow_null=True, required=False
+    )
+    worker_parameter = serializers.RegexField(
+        f"^({PARAMETER})?$", max_length=40, allow_blank=True, required=False
+    )
+    assignment_parameter = serializers.RegexField(
+        f"^({PARAMETER})?$", max_length=40, allow_blank=True, required=False
+    )
+    frame_origins = LineField(
+        max_length=500, allow_blank=True, required=False, help_text="separated by blanks"
+    )
+    screening_question = LineField(
+        max_length=300, allow_blank=True, required=False, help_text="who answers no gets no task"
+    )
+    screened_out_code = LineField(max_length=40, allow_blank=True, required=False)
+    screened_out_url = serializers.URLField(max_length=500, allow_blank=True, required=False)
+
+
+class NewCampaign(OfMarket):
     """What people are asked. Without ``task_categories`` all commands are drawn from; texts are Markdown."""
 
     name = LineField(max_length=LONGEST_CAMPAIGN_NAME)
@@ -121,9 +157,6 @@ class NewCampaign(Fields):
     allows_model_help = serializers.BooleanField(default=False)
     allows_retake = serializers.BooleanField(default=False)
     price = serializers.DecimalField(7, 2, min_value=0, allow_null=True, default=None)
-    currency = LineField(max_length=8, allow_blank=True, default="")
-    completion_code = LineField(max_length=40, allow_blank=True, default="")
-    return_url = serializers.URLField(max_length=500, allow_blank=True, default="")
     ends_at = serializers.DateField(allow_null=True, default=None, help_text="the last day")
     most_submissions = serializers.IntegerField(
         min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True, default=None
@@ -138,13 +171,10 @@ class NewCampaign(Fields):
     thanks = MarkdownField(THANKS)
 
 
-class CampaignChange(Fields):
+class CampaignChange(OfMarket):
     """What may be changed after the launch. The consent stays once somebody has agreed to it."""
 
     price = serializers.DecimalField(7, 2, min_value=0, allow_null=True)
-    currency = LineField(max_length=8, allow_blank=True)
-    completion_code = LineField(max_length=40, allow_blank=True)
-    return_url = serializers.URLField(max_length=500, allow_blank=True)
     ends_at = serializers.DateField(allow_null=True, help_text="the last day")
     most_submissions = serializers.IntegerField(
         min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True

@@ -3,38 +3,31 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import wraps
+from dataclasses import replace
 from hashlib import sha256
-from http import HTTPStatus
+from urllib.parse import quote
 
 from django import forms
-from django.contrib.auth.decorators import login_not_required
 from django.core import signing
-from django.http import Http404, HttpRequest, HttpResponse, JsonResponse
-from django.shortcuts import redirect, render
-from django.urls import reverse
-from django.views.decorators.cache import never_cache
-from django.views.decorators.http import require_http_methods
+from django.http import Http404, HttpResponse, JsonResponse
+from django.utils import timezone
 
 from annotations.campaigns.answering import finish, save_answer, warnings_for
 from annotations.campaigns.limits import TooOften, count_task, require_patience
-from annotations.campaigns.pseudonyms import DEVICE, market_id_in, new_device, pseudonym_of
+from annotations.campaigns.pseudonyms import ASSIGNMENT_IDS
 from annotations.campaigns.taboo import taboo_words_for
-from annotations.campaigns.tasks import CampaignOver, begin, contributor_of, require_open
-from annotations.language.errors import Refusal
+from annotations.campaigns.tasks import CampaignOver, begin, require_open
+from annotations.language.english import say_count
 from annotations.language.paraphrases import RewriteFault, RewriteWarning
-from annotations.models import Campaign, Contributor, Submission
+from annotations.models import Campaign, Submission
 from annotations.models.campaigns import MOST_PLACES
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE
 from annotations.people.allowances import only_reads
+from annotations.web.campaigns.visits import Visit, public_view
 
-KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known
 LONGEST_LOOK = 24 * 3600  # seconds; who looks at a prompt for longer was away
 SHOWN = "annotations.campaigns.shown"  # salts what is signed
-ELSEWHERE = "This task was begun in another browser. Go on there: what you wrote is kept."
 # What a writer is told; {} is the evidence.
 WARNINGS = {
     RewriteFault.TOO_CLOSE: "This is almost what it was. Can you say it in your own words?",
@@ -43,167 +36,133 @@ WARNINGS = {
 }
 
 
-@dataclass(frozen=True)
-class Visit:
-    """A request to a campaign: whose task it is about, None where they have not begun."""
-
-    request: HttpRequest
-    campaign: Campaign
-    pseudonym: str
-    contributor: Contributor | None
-    is_known: bool  # by the browser's cookie
-
-    def page(
-        self, template: str, status: int = 200, may_remember: bool = True, **context: object
-    ) -> HttpResponse:
-        """Render a page. The browser is remembered from the first one on, unless it is of somebody else."""
-        context |= {"campaign": self.campaign, "contributor": self.contributor}
-        name = f"annotations/campaigns/{template}.html"
-        response = render(self.request, name, context, status=status)
-        return self.remembered(response) if may_remember else response
-
-    def to(self, place: int | str = "") -> HttpResponse:
-        """Lead to a place of the task, to its end (``done``), or to the first page."""
-        path = reverse("campaign", args=[self.campaign.key])
-        return self.remembered(redirect(f"{path}{place}/" if place else path))
-
-    def remembered(self, response: HttpResponse) -> HttpResponse:
-        if not self.is_known:
-            response.set_signed_cookie(
-                cookie_of(self.campaign),
-                self.pseudonym,
-                max_age=KNOWN_FOR,
-                path="/p/",
-                httponly=True,
-                samesite="Lax",
-                secure=self.request.is_secure(),
-            )
-        return response
-
-    def refusal(self, refusal: Refusal) -> HttpResponse:
-        response = self.page("refusal", refusal.status, refusal=refusal.message)
-        if refusal.wait:
-            response["Retry-After"] = str(refusal.wait)
-        return response
-
-
-View = Callable[..., HttpResponse]
-
-
-def cookie_of(campaign: Campaign) -> str:
-    return f"campaign_{campaign.pk}"
-
-
-def public_view(methods: tuple[str, ...]) -> Callable[[View], View]:
-    """Return a view at ``/p/<key>/…`` for whoever has the link; it receives a ``Visit``.
-
-    A browser is known by a signed cookie, and a new one by the id that a crowd market sends in the address.
-    That id alone never leads to what somebody has written.
-    """
-
-    def decorate(view: View) -> View:
-        @wraps(view)
-        def guarded(request: HttpRequest, key: str, **kwargs: int) -> HttpResponse:
-            campaign = Campaign.objects.for_key(key)
-            if campaign is None:
-                said = "No campaign has this link. Ask whoever sent it to you for another one."
-                context = {"refusal": said}
-                return render(request, "annotations/campaigns/refusal.html", context, status=404)
-            visit = visit_to(campaign, request)
-            if visit.contributor is not None and not visit.is_known:
-                return visit.page(
-                    "refusal", HTTPStatus.CONFLICT, may_remember=False, refusal=ELSEWHERE
-                )
-            try:
-                return view(visit, **kwargs)
-            except Refusal as refusal:
-                return visit.refusal(refusal)
-
-        return login_not_required(never_cache(require_http_methods(methods)(guarded)))
-
-    return decorate
-
-
-def visit_to(campaign: Campaign, request: HttpRequest) -> Visit:
-    known = request.get_signed_cookie(cookie_of(campaign), "", max_age=KNOWN_FOR)
-    market = market_id_in(request.GET)
-    if known and (market is None or contributor_of(campaign, known)):
-        return Visit(request, campaign, known, contributor_of(campaign, known), True)
-    pseudonym = pseudonym_of(campaign, *(market or (DEVICE, new_device())))
-    contributor = contributor_of(campaign, pseudonym)
-    return Visit(request, campaign, pseudonym, contributor, known == pseudonym)
-
-
 @public_view(READ_AND_WRITE)
 def campaign_begin(visit: Visit) -> HttpResponse:
     """Say what the campaign is about, and begin a task for whoever agrees."""
     contributor, campaign = visit.contributor, visit.campaign
+    if contributor is None and visit.visitor.is_screened_out:
+        return show_screened_out(visit)
     may_retake = campaign.allows_retake and not campaign.is_over
-    has_to_begin = contributor is None or (contributor.is_finished and may_retake)
+    has_to_begin = visit.is_preview or contributor is None
+    has_to_begin = has_to_begin or bool(contributor and contributor.is_finished and may_retake)
     if has_to_begin:
         require_open(campaign)
     elif contributor and not contributor.is_finished and campaign.is_locked:
         raise CampaignOver(has_begun=True)
-    digest = sha256(campaign.consent.encode()).hexdigest()[:16]
     if visit.request.method != "POST":
-        if market_id_in(visit.request.GET):
-            return visit.to()  # the id leaves the address, and with it every log of it
-        return visit.page("begin", has_to_begin=has_to_begin, consent_digest=digest)
+        return show_begin(visit, has_to_begin)
     if has_to_begin:
-        missing = ""
-        if not visit.request.POST.get("agrees"):
-            missing = "Tick the box to begin: without your consent nothing is stored."
-        elif visit.request.POST.get("consent", digest) != digest:
-            missing = "This text was changed while you read it. Read it again, then tick the box."
-        if missing:
-            return visit.page(
-                "begin", 422, has_to_begin=True, missing=missing, consent_digest=digest
+        sent, missing = visit.request.POST, {}
+        if campaign.screening_question and sent.get("fits") == "no":
+            return show_screened_out(
+                replace(visit, visitor=replace(visit.visitor, is_screened_out=True))
             )
+        if campaign.screening_question and sent.get("fits") != "yes":
+            missing["fits"] = "Choose one of the two."
+        if not sent.get("agrees"):
+            missing["agrees"] = "Tick the box to begin: without your consent nothing is stored."
+        elif sent.get("consent", digest := consent_digest(campaign)) != digest:
+            missing["agrees"] = (
+                "This text was changed while you read it. Read it again, then tick the box."
+            )
+        if missing:
+            return show_begin(visit, has_to_begin, missing)
+        if visit.is_preview:
+            return visit.to(1)
         count_task(str(visit.request.META["REMOTE_ADDR"]))
-        contributor = begin(campaign, visit.pseudonym)
-    assert contributor is not None
-    return visit.to(next_place(contributor))
+        contributor = begin(campaign, visit.visitor.pseudonym)
+        visit = replace(visit, contributor=contributor)
+    return visit.to(next_place(visit))
+
+
+def show_begin(
+    visit: Visit, has_to_begin: bool, missing: dict[str, str] | None = None
+) -> HttpResponse:
+    return visit.page(
+        "begin",
+        422 if missing else 200,
+        has_to_begin=has_to_begin,
+        missing=missing,
+        facts=facts_of(visit.campaign),
+        consent_digest=consent_digest(visit.campaign),
+    )
+
+
+def show_screened_out(visit: Visit) -> HttpResponse:
+    """Thank whoever does not fit, with what the market wants of them. Nothing of them is stored."""
+    campaign = visit.campaign
+    handing_in = way_back(visit, campaign.screened_out_code, campaign.screened_out_url)
+    return visit.page("screened_out", **handing_in)
+
+
+def facts_of(campaign: Campaign) -> list[tuple[str, str]]:
+    """Return what somebody wants to know before they agree, as names and values."""
+    size = f"{say_count(campaign.task_size, 'command')} to say in your own words"
+    if campaign.checks:
+        size += f", {say_count(campaign.checks, 'short check')}"
+    if campaign.free_commands:
+        size += f", {say_count(campaign.free_commands, 'command')} of your own"
+    pay = "none" if campaign.price is None else f"{campaign.price} {campaign.currency}".strip()
+    facts = [
+        ("How much", size),
+        ("How long", f"about {say_count(campaign.expected_minutes, 'minute')}"),
+        ("Payment", pay),
+        ("Who runs it", campaign.run_by),
+        ("Questions to", campaign.contact),
+    ]
+    return [(name, value) for name, value in facts if value]
+
+
+def consent_digest(campaign: Campaign) -> str:
+    """Return a hash of all that somebody agrees to."""
+    return sha256(repr((campaign.consent, facts_of(campaign))).encode()).hexdigest()[:16]
 
 
 @public_view(READ_AND_WRITE)
 def campaign_place(visit: Visit, position: int) -> HttpResponse:
     """Show one place of the task; save what is written there and lead to the next one."""
-    place = place_of(visit, position)
-    if place is None:
+    places = places_of(visit, position)
+    if not 0 < position <= len(places):
         return visit.to()
+    place = places[position - 1]
     if place.contributor.is_finished:
         return visit.to("done")
     if visit.campaign.is_locked:
         raise CampaignOver(has_begun=True)
+    if not visit.may_see(place):
+        return visit.to(next_place(visit))
     request = visit.request
     if request.method != "POST":
-        return show_place(visit, place)
+        return show_place(visit, places, position)
     form = AnswerForm(request.POST)
     if not form.is_valid():
-        return show_place(visit, place, form, status=422)
-    text = form.cleaned_data["text"]
-    try:
-        require_patience(place.contributor)
-    except TooOften as refusal:
-        form.add_error("text", refusal.message)
-        response = show_place(visit, place, form, refusal.status)
-        response["Retry-After"] = str(refusal.wait)
-        return response
-    seconds = seconds_since(form.cleaned_data["shown"], place)
-    save_answer(place, text, seconds, was_pasted=form.cleaned_data["pasted"])
-    # Whoever has not seen the advice while writing gets it now, once.
-    if not form.cleaned_data["advised"] and warnings_for(place, text):
-        return visit.remembered(redirect(f"{request.path}?advice=1"))
-    return visit.to(position + 1 if position < place.contributor.submissions.count() else "done")
+        return show_place(visit, places, position, form, status=422)
+    if not visit.is_preview:
+        text = form.cleaned_data["text"]
+        try:
+            require_patience(place.contributor)
+        except TooOften as refusal:
+            form.add_error("text", refusal.message)
+            response = show_place(visit, places, position, form, refusal.status)
+            response["Retry-After"] = str(refusal.wait)
+            return response
+        seconds = seconds_since(form.cleaned_data["shown"], place)
+        was_pasted = form.cleaned_data["pasted"]
+        save_answer(place, text, seconds, was_pasted, visit.visitor.browser)
+        # Whoever has not seen the advice while writing gets it now, once.
+        if not form.cleaned_data["advised"] and warnings_for(place, text):
+            return visit.to(position, advice="1")
+    following = (each.position for each in places[position:] if visit.may_see(each))
+    return visit.to(next(following, "done"))
 
 
 @only_reads
 @public_view(WRITE)
 def campaign_check(visit: Visit, position: int) -> HttpResponse:
     """Answer, as JSON, what to tell the writer of a text; nothing is stored."""
-    place = place_of(visit, position)
+    places = places_of(visit, position)
     text = visit.request.POST.get("text", "")[:MOST_CHARACTERS]
-    warnings = () if place is None else warnings_for(place, text)
+    warnings = warnings_for(places[position - 1], text) if 0 < position <= len(places) else ()
     told = [{"code": each.code, "sentence": sentence_of(each)} for each in warnings]
     return JsonResponse({"warnings": told})
 
@@ -211,22 +170,60 @@ def campaign_check(visit: Visit, position: int) -> HttpResponse:
 @public_view(READ_AND_WRITE)
 def campaign_done(visit: Visit) -> HttpResponse:
     """Ask at the end whether a language model helped; then thank, with the code for a crowd market."""
-    contributor = visit.contributor
+    contributor, request = visit.contributor, visit.request
     if contributor is None:
         return visit.to()
+    if visit.is_preview:
+        if request.method == "POST":
+            contributor.finished_at = timezone.now()
+        return show_done(visit)
     if not contributor.is_finished and visit.campaign.is_locked:
         raise CampaignOver(has_begun=True)
-    empty = contributor.submissions.filter(text="").order_by("position").first()
-    if empty is not None:
-        return visit.to(empty.position)
-    if visit.request.method == "POST" and not contributor.is_finished:
-        helped = visit.request.POST.get("helped")
+    if (place := next_place(visit)) != "done":
+        return visit.to(place)
+    if request.method == "POST" and not contributor.is_finished:
+        helped = request.POST.get("helped")
         if helped not in ("yes", "no"):
-            missing = "Choose one of the two: both are fine to say."
-            return visit.page("done", 422, missing=missing, size=contributor.submissions.count())
+            return show_done(visit, "Choose one of the two: both are fine to say.")
         finish(contributor, helped == "yes")
         return visit.to("done")
-    return visit.page("done", size=contributor.submissions.count())
+    return show_done(visit)
+
+
+def show_done(visit: Visit, missing: str = "") -> HttpResponse:
+    """Show the last question, or the thanks. A preview has no code, for it is for everybody."""
+    campaign = visit.campaign
+    code = campaign.completion_code
+    if visit.is_preview and code:
+        code = "the code stands here"
+    return visit.page(
+        "done",
+        422 if missing else 200,
+        missing=missing,
+        back=previous_address(visit, visit.places()),
+        **way_back(visit, code, campaign.return_url),
+    )
+
+
+def way_back(visit: Visit, code: str, address: str) -> dict[str, object]:
+    """Return what takes somebody back to where they came from: a code, and a link or a form.
+
+    In the frame of a market that names the assignment, a form posts it: that ends a task of Mechanical Turk.
+    """
+    assignment = visit.visitor.assignment
+    name = visit.campaign.assignment_parameter or ASSIGNMENT_IDS[0]
+    is_posted = visit.is_carried and assignment and "{assignment}" not in address
+    return {
+        "code": code,
+        "return_address": address.replace("{assignment}", quote(assignment, safe="")),
+        "handed_in": {
+            name: assignment,
+            "code": code,
+            "contributor": visit.visitor.pseudonym,
+        }
+        if is_posted
+        else {},
+    }
 
 
 class AnswerForm(forms.Form):
@@ -245,15 +242,19 @@ class AnswerForm(forms.Form):
 
 
 def show_place(
-    visit: Visit, place: Submission, form: AnswerForm | None = None, status: int = 200
+    visit: Visit,
+    places: list[Submission],
+    position: int,
+    form: AnswerForm | None = None,
+    status: int = 200,
 ) -> HttpResponse:
-    size = place.contributor.submissions.count()
+    place = places[position - 1]
     wants_advice = "advice" in visit.request.GET and form is None
     return visit.page(
         "place",
         status,
         place=place,
-        size=size,
+        size=len(places),
         text=place.text if form is None else form.data.get("text", ""),
         errors=[] if form is None else form.errors.get("text", []),
         warnings=[sentence_of(each) for each in warnings_for(place, place.text)]
@@ -262,23 +263,29 @@ def show_place(
         taboo=taboo_words_for(place),
         shown=signing.dumps([place.pk, time.time()], salt=SHOWN),
         most_characters=MOST_CHARACTERS,
+        here=visit.address(position),
+        advises=visit.address(f"{position}/check"),
+        back=previous_address(visit, places[: position - 1]),
     )
 
 
-def place_of(visit: Visit, position: int) -> Submission | None:
-    """Return a place of the task; None where it has none of that number, or was not begun."""
+def places_of(visit: Visit, position: int) -> list[Submission]:
+    """Return the places of the task; none before it was begun."""
     if position > MOST_PLACES:
         raise Http404("No task has so many places.")
-    if visit.contributor is None:
-        return None
-    places = visit.contributor.submissions.select_related("prompt", "contributor__campaign")
-    return places.filter(position=position).first()
+    return visit.places()
 
 
-def next_place(contributor: Contributor) -> int | str:
+def next_place(visit: Visit) -> int | str:
     """Return the number of the first empty place, ``done`` without one."""
-    empty = contributor.submissions.filter(text="").order_by("position").first()
-    return "done" if empty is None else empty.position
+    empty = (place.position for place in visit.places() if not place.text)
+    return next(empty, "done")
+
+
+def previous_address(visit: Visit, places: list[Submission]) -> str:
+    """Return the address of the last of ``places`` whose text may be seen here, or of the first page."""
+    seen = (place.position for place in reversed(places) if visit.may_see(place))
+    return visit.address(next(seen, ""))
 
 
 def sentence_of(warning: RewriteWarning) -> str:

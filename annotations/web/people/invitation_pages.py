@@ -5,6 +5,7 @@ from __future__ import annotations
 from django.contrib.auth import login
 from django.contrib.auth.decorators import login_not_required
 from django.contrib.auth.forms import UserCreationForm
+from django.core.exceptions import ValidationError
 from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.views.decorators.cache import never_cache
@@ -46,6 +47,12 @@ class SignUpForm(UserCreationForm):  # type: ignore[type-arg]  # generic in the 
             "autocapitalize": "none",
         }
         ask_twice(self, "password1", "password2")
+
+    def clean_username(self) -> str:
+        name: str = self.cleaned_data["username"]
+        if User.objects.alike(name):
+            raise ValidationError(str(NameTaken()))
+        return name
 
 
 @login_not_required

@@ -18,6 +18,7 @@ from annotations.language.errors import LanguageError, Refusal
 from annotations.models import Assignment, Duty, Label, User, Verdict, WorkItem, WorkKind, World
 from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
 from annotations.models.queueing import WorkItemQuerySet, work_kind_choices
+from annotations.people.members import find_account
 from annotations.queueing.enqueuing import ASKABLE, ask_about
 from annotations.queueing.finishing import finish, give_back, skip
 from annotations.queueing.giving import assign, assign_first, next_item, take, withdraw
@@ -151,8 +152,8 @@ class GivenSerializer(serializers.Serializer[Any]):
 def person_called(world: World, name: str) -> User:
     """Return the member whom admins may give an item. Raises Refusal where there is none."""
     members: Any = row_field(AssignForm(world), "person").queryset
-    person: User | None = members.filter(username=name).first()
-    if person is None:
+    person = find_account(name)
+    if person is None or not members.filter(pk=person.pk).exists():
         said = "Choose a person of this world."
         raise Refusal(said, "no_such_member", problems=[{"field": "person", "message": said}])
     return person

@@ -17,6 +17,8 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import PreconditionRequired
 
 ANY = "*"
+OTHER = "This is not the version that you read."
+WEAK = "If-Match takes no weak tag: send it as the ETag has it, without W/."
 
 
 def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
@@ -30,22 +32,23 @@ def etag_of(row: Any, shown: Mapping[str, Any]) -> str:
 def require_match(request: ApiRequest, row: Any, shown: Mapping[str, Any]) -> None:
     """Refuse a write to a version of ``row`` that is not the present one; ``*`` stands for any.
 
+    A weak tag names no version: it stands for rows that are nearly the same.
     Raises PreconditionRequired without a version, and Overtaken for another one.
     """
     asked = request.headers.get("If-Match")
     if not asked:
         raise PreconditionRequired
-    # An answer that was compressed on its way has the same tag, marked as weak.
-    tags = [tag.removeprefix("W/") for tag in parse_etags(asked)]
+    tags = parse_etags(asked)
     if tags != [ANY] and etag_of(row, shown) not in tags:
-        raise Changed(row)
+        is_weak = any(tag.startswith("W/") for tag in tags)
+        raise Changed(row, WEAK if is_weak else OTHER)
 
 
 class Changed(Overtaken):
     """The row is at another version than the request says."""
 
-    def __init__(self, row: Any) -> None:
-        self.sentence = "This is not the version that you read."
+    def __init__(self, row: Any, sentence: str = OTHER) -> None:
+        self.sentence = sentence
         Refusal.__init__(self, f"{self.sentence} Compare yours with the present one below.")
         self.current = row
         self.base = self.last = None

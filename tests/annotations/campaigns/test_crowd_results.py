@@ -360,3 +360,21 @@ def test_flags_cost_linear_time(world):
         return lambda: plan_results(campaign, table, "results.csv")
 
     assert growth(plan, 300) < 2.3
+
+
+def test_an_assignment_is_known_again_by_its_id(world, admin):
+    first = {**SAID, "AssignmentId": "A1"}
+    taken_in(world, admin, results([first, {**SAID, "AssignmentId": "A2"}]))
+    assert Contributor.objects.count() == 2
+    campaign = Campaign.objects.get()
+    changed = results([{**first, "1": "walk into the study"}, {**SAID, "AssignmentId": "A3"}])
+    done = taken_in(world, admin, changed, campaign=campaign)
+    assert done.report["counts"]["repeated"] == 1 and Contributor.objects.count() == 3
+    assert not any("A1" in str(each) for each in Contributor.objects.values())
+
+
+def test_what_was_imported_before_its_id_was_read_is_known_too(world, admin):
+    taken_in(world, admin, results([SAID]))
+    again = results([{**SAID, "AssignmentId": "A1"}])
+    job = send(world, admin, again, campaign=Campaign.objects.get())
+    assert job.report["counts"]["repeated"] == 1 and not job.is_waiting_for_answer

@@ -171,7 +171,9 @@ def test_with_the_address_of_a_crowd_market(link, logged_in):
     expect(page.locator("main")).to_contain_text("Welcome back")
     other = logged_in(None, variant=NARROW_LIGHT).new_page()
     other.goto(f"{link}?PROLIFIC_PID={pid}")
-    expect(other.locator("main")).to_contain_text("begun in another browser")
+    other.get_by_role("button", name="Go on").click()
+    expect(other.locator(".campaign-bar span")).to_have_text("2 of 3")
+    assert other.locator("#text").input_value() == ""
     assert Contributor.objects.count() == 1
 
 

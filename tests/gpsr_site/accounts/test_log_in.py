@@ -208,3 +208,29 @@ def test_after_a_wrong_password_the_cursor_stands_in_its_field(annotator, client
     assert re.findall(r"<input[^>]*autofocus", page) == re.findall(
         r'<input[^>]*type="password"[^>]*autofocus', page
     )
+
+
+@pytest.mark.parametrize("typed", ["anna", "Anna", "ANNA", " aNNa "])
+def test_the_case_of_a_name_plays_no_part(typed, client):
+    assert client.post("/login/", {**RIGHT, "username": typed}).status_code == 302
+
+
+@pytest.mark.parametrize("typed", ["émile", "Émile", "ÉMILE"])
+def test_the_case_of_other_letters_plays_no_part_either(typed, client):
+    User.objects.create_user("Émile", password=RIGHT["password"])
+    assert client.post("/login/", {**RIGHT, "username": typed}).status_code == 302
+
+
+def test_two_whose_names_differ_in_case_alone_log_in_by_their_own(client):
+    User.objects.create_user("Carla", password="the first one")
+    User.objects.create_user("carla", password="the second one")
+    for name, password, status in (
+        ("Carla", "the first one", 302),
+        ("carla", "the second one", 302),
+        ("carla", "the first one", 200),
+        ("CARLA", "the first one", 200),
+    ):
+        assert (
+            client.post("/login/", {"username": name, "password": password}).status_code == status
+        )
+        client.logout()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import logging
 import re
 import urllib.error
 import urllib.request
@@ -13,6 +14,7 @@ import pytest
 from django.db import InterfaceError, OperationalError
 from django.test import Client
 
+from gpsr_site.logs import RefusedInOneLine
 from gpsr_site.web.error_pages import is_outage
 
 
@@ -200,3 +202,38 @@ def test_another_host_is_refused_in_plain_words(db, client):
 def test_django_s_admin_has_the_icon_of_the_workbench(superuser, client):
     client.force_login(superuser)
     assert "favicon.svg" in client.get("/admin/").content.decode()
+
+
+@pytest.mark.parametrize(
+    "origin",
+    ["https://testserver", "http://lab.example.org", "https://lab.example.org:8443", "null"],
+)
+def test_a_form_of_another_address_is_told_both_addresses_and_what_to_set(origin, db):
+    browser = Client(enforce_csrf_checks=True)
+    page = browser.get("/login/").content.decode()
+    token = re.search(r'name="csrfmiddlewaretoken" value="(\w+)"', page)[1]
+    sent = {"username": "anna", "password": "x", "csrfmiddlewaretoken": token}
+    answer = browser.post("/login/", sent, headers={"origin": origin})
+    said = answer.content.decode()
+    assert answer.status_code == 403
+    assert origin in said and "http://testserver" in said
+    assert all(name in said for name in ("HTTPS", "ALLOWED_HOSTS", "CSRF_TRUSTED_ORIGINS"))
+    # A form without its cookie is an old one, as before.
+    old = Client(enforce_csrf_checks=True).post(
+        "/login/", sent, headers={"origin": "http://testserver"}
+    )
+    assert old.status_code == 403 and "ALLOWED_HOSTS" not in old.content.decode()
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1", "192.0.2.9"])
+@pytest.mark.parametrize("path", ["/login/", "/api/v1/worlds/"])
+def test_another_name_of_the_site_is_told_and_its_own_only_here(path, address, settings, caplog):
+    settings.ALLOWED_HOSTS = ["lab.example.org"]
+    headers = {"host": "robot.local:8000"}
+    answer = Client(REMOTE_ADDR=address).get(path, headers=headers)
+    said = answer.content.decode()
+    assert answer.status_code == 400 and "ALLOWED_HOSTS" in said
+    assert ("lab.example.org" in said) is (address == "127.0.0.1")
+    (record,) = [each for each in caplog.records if each.name.startswith("django.security")]
+    assert RefusedInOneLine().filter(record)
+    assert "Traceback" not in logging.Formatter().format(record)

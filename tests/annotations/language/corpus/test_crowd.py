@@ -162,3 +162,37 @@ def test_the_line_with_which_excel_names_the_separator_is_none_of_the_table():
     text = f"sep=;\n{head}\nw;go on;( a );walk, on\nw;go on;( a;walk\n"
     assert read(text).assignments[0].rewrites[0].text == "walk, on"
     assert places(text) == [(4, 3, True)]
+
+
+@pytest.mark.parametrize(
+    "state", ["Returned", "RETURNED", "TIMED-OUT", "Timed Out", "timed_out", "Abandoned", "expired"]
+)
+@pytest.mark.parametrize("head", ["AssignmentStatus", "Status"])
+def test_what_was_given_back_is_no_answer(state, head):
+    names = [head if name == "AssignmentStatus" else name for name in HEAD]
+    rows = [[state if cell == "Approved" else cell for cell in row] for row in ROWS]
+    results = read(table(rows, head=names))
+    assert [each.worker for each in results.assignments] == ["W3"]
+    assert (results.unfinished, results.rejected, results.empty) == (2, 1, 0)
+
+
+@pytest.mark.parametrize("state", ["AWAITING REVIEW", "Approved", "Submitted", "IP Address", ""])
+def test_what_was_handed_in_is_an_answer(state):
+    rows = [[state if cell == "Approved" else cell for cell in row] for row in ROWS]
+    assert len(read(table(rows)).assignments) == 2
+
+
+@pytest.mark.parametrize("name", ["AssignmentId", "Submission id", "SESSION_ID"])
+def test_the_id_of_the_assignment_is_read(name):
+    rows = [[f"A{number}", *row] for number, row in enumerate(ROWS)]
+    assignments = read(table(rows, head=[name, *HEAD])).assignments
+    assert [each.key for each in assignments] == ["A0", "A2"]
+
+
+def test_the_id_of_somebody_is_read_under_the_name_that_the_campaign_has():
+    text = table(head=["rid" if name == "WorkerId" else name for name in HEAD])
+    assert read(text).problems[0].is_error
+    results = read_crowd_results(text, "results.csv", 500, "RID")
+    assert (results.assignments[0].market, results.assignments[0].worker) == ("RID", "W1")
+    participants = table(head=["Participant id" if name == "WorkerId" else name for name in HEAD])
+    assert read(participants).assignments[0].market == "PROLIFIC_PID"

@@ -62,6 +62,11 @@ def test_a_preview_stores_nothing(adam, household):
         ({"ends_at": "2020-01-01"}, "ends_at"),
         ({"ends_at": "9999-12-31"}, "ends_at"),
         ({"return_url": "javascript:alert(1)"}, "return_url"),
+        ({"return_url": "https://me:secret@market.example/"}, "return_url"),
+        ({"return_url": "https://market.example/" + "x" * 500}, "return_url"),
+        ({"screened_out_url": "http://10.0.0.7/"}, "screened_out_url"),
+        ({"frame_origins": "https://*.example"}, "frame_origins"),
+        ({"worker_parameter": "a b"}, "worker_parameter"),
         ({"price": "-1"}, "price"),
     ],
 )
@@ -195,3 +200,15 @@ def test_the_page_says_until_when_those_who_have_begun_may_finish(adam, world):
     assert "may finish until" in page(adam, f"{campaign.pk}/")
     Campaign.objects.update(closed_at=timezone.now() - GRACE)
     assert "may finish until" not in page(adam, f"{campaign.pk}/")
+
+
+def test_a_link_of_this_computer_is_told_so_and_what_is_missing_too(launched, adam):
+    campaign = launched()
+    address = f"/w/home/campaigns/{campaign.pk}/"
+    page = adam.get(address, headers={"host": "localhost"}).content.decode()
+    assert "ALLOWED_HOSTS" in page and f"{address}edit/" in page
+    assert "?visit=preview" in page
+    missing = page.count(f"{address}edit/")
+    type(campaign).objects.update(run_by="Lab", contact="a@lab.example")
+    page = adam.get(address).content.decode()
+    assert "ALLOWED_HOSTS" not in page and page.count(f"{address}edit/") == missing - 1

@@ -117,6 +117,8 @@ def test_texts_end_and_payment_are_changed_at_a_version(call_as, admin, world):
     "body",
     [
         *({"task_size": 3}, {"ends_at": "2020-01-01"}, {"return_url": "javascript:alert(1)"}),
+        *({"return_url": "http://market.example/"}, {"frame_origins": "market.example"}),
+        *({"worker_parameter": "a=b"}, {"minutes": 0}, {"screened_out_url": "https://wiki/"}),
         *({"most_per_hour": 0}, {"price": "-1"}, {"thanks": None}, {"consent": "x" * 8_001}),
     ],
 )

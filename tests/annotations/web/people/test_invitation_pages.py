@@ -10,7 +10,7 @@ from django.utils import timezone
 
 from annotations.models import Invitation, Membership, User
 from annotations.models.worlds import Role
-from annotations.people.invitations import InvitationOver, join, sign_up
+from annotations.people.invitations import InvitationOver, NameTaken, join, sign_up
 from annotations.people.rate_limits import JOINING
 
 PEOPLE = "/w/home/people/"
@@ -176,3 +176,23 @@ def test_a_class_behind_one_address_joins(invited, world):
     _, link = invited(places=JOINING.limit + 5)
     for number in range(JOINING.limit + 5):
         assert Client().post(link, {**NEW, "username": f"pupil{number}"}).status_code == 302
+
+
+@pytest.mark.parametrize(
+    ("held", "wanted"), [("Carla", "carla"), ("émile", "ÉMILE"), ("nora", "Nora")]
+)
+def test_a_name_that_somebody_has_in_another_case_is_taken(held, wanted, invited, client):
+    User.objects.create_user(held)
+    invitation, link = invited()
+    answer = client.post(link, {**NEW, "username": wanted})
+    assert answer.status_code == 422 and answer.context["form"].errors["username"]
+    with pytest.raises(NameTaken):
+        sign_up(invitation, wanted, "a battery staple")
+    assert User.objects.filter(username__in=[held, wanted]).count() == 1
+
+
+def test_a_link_that_only_this_computer_opens_is_told_so(adam):
+    for host, is_told in (("localhost", True), ("testserver", False)):
+        adam.post(f"{PEOPLE}invite/", SENT, headers={"host": host})
+        page = adam.get(PEOPLE, headers={"host": host}).content.decode()
+        assert ("ALLOWED_HOSTS" in page) is is_told
