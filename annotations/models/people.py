@@ -6,7 +6,7 @@ import hashlib
 import secrets
 from datetime import datetime, timedelta
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from django.contrib.auth.models import AbstractUser, UserManager
 from django.contrib.sessions.backends.db import SessionStore as DatabaseStore
@@ -49,7 +49,7 @@ class Accounts(UserManager["User"]):
 class User(AbstractUser):
     """A person with an account. What they may do is said by their memberships, per world."""
 
-    objects = Accounts()
+    objects: ClassVar[Accounts] = Accounts()
 
     if TYPE_CHECKING:
         _password: str | None  # the new one, until it is saved

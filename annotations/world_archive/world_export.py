@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import Any, cast
 
-from django.db.models import Count
+from django.db.models import Count, Field
 
 from annotations.exporting.generator_export import generator_files
 from annotations.exporting.pipe import Pipe
@@ -151,7 +151,10 @@ def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
 
 
 def _history_lines(kind: EditableKind, entries: Any) -> Iterator[str]:
-    columns = [kind.model._meta.get_field(name) for name in kind.model.edited_fields]
+    columns = [
+        cast("Field[Any, Any]", kind.model._meta.get_field(name))
+        for name in kind.model.edited_fields
+    ]
     for entry in entries.iterator(chunk_size=CHUNK):
         values = {
             "row": entry.id,

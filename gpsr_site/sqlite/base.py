@@ -8,6 +8,7 @@ written, in bulk too, with an IntegrityError that names the constraint.
 from __future__ import annotations
 
 import os
+import sqlite3
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,7 @@ class DatabaseWrapper(base.DatabaseWrapper):
         beside it: with one, SQLite reads both by itself. Raises OperationalError."""
         try:
             return super().get_new_connection(conn_params)
-        except base.Database.OperationalError:
+        except sqlite3.OperationalError:
             path = Path(conn_params["database"])
             if os.access(path.parent, os.W_OK) or Path(f"{path}-wal").exists():
                 raise

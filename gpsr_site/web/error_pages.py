@@ -38,7 +38,7 @@ def bad_request(request: HttpRequest, exception: Exception) -> HttpResponse:
             f"This site does not answer under the name in the address of this page.{_names_for(request)} Whoever "
             "runs it adds a name to the variable ALLOWED_HOSTS."
         )
-        return refuse(request, 400, "The site has another name", sentence)
+        return refuse(request, 400, "The site has another name", sentence, "other_host")
     return refuse(
         request,
         400,
@@ -128,6 +128,7 @@ def csrf_failure(request: HttpRequest, reason: str = "") -> HttpResponse:
             f"{request.scheme}://{request.get_host()}. Open it under that address. If a proxy stands between, "
             "whoever runs the site sets HTTPS=true where the proxy speaks HTTPS, and lets it hand on the header "
             "Host; a name is added to ALLOWED_HOSTS, any other address to CSRF_TRUSTED_ORIGINS.",
+            "other_origin",
         )
     return refuse(
         request,

@@ -48,7 +48,7 @@ class Worker(models.Model):
         ordering = ["name"]
 
     def __str__(self) -> str:
-        return self.name
+        return str(self.name)
 
     @property
     def queues(self) -> list[str]:

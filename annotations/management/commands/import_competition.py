@@ -47,8 +47,9 @@ class Command(ReportingCommand):
         arena: str,
         **options: Any,
     ) -> Mapping[str, Any]:
-        choices = {"brings_back": bring_back, "encoding": encoding, "arena": arena}
-        report = import_competition(world, folder, **choices)
+        report = import_competition(
+            world, folder, brings_back=bring_back, encoding=encoding, arena=arena
+        )
         if report.is_waiting:
             names = ", ".join(report.arenas)
             sentence = f"The folder has files of several arenas: {names}. Choose one with --arena."

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from hashlib import sha256
+from typing import Any
 from urllib.parse import quote
 
 from django import forms
@@ -205,7 +206,7 @@ def show_done(visit: Visit, missing: str = "") -> HttpResponse:
     )
 
 
-def way_back(visit: Visit, code: str, address: str) -> dict[str, object]:
+def way_back(visit: Visit, code: str, address: str) -> dict[str, Any]:
     """Return what takes somebody back to where they came from: a code, and a link or a form.
 
     In the frame of a market that names the assignment, a form posts it: that ends a task of Mechanical Turk.

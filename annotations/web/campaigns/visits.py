@@ -132,7 +132,7 @@ class Visit:
         origins = self.campaign.frame_origins.split()
         if not origins:
             return response
-        response.xframe_options_exempt = True  # type: ignore[attr-defined]  # what Django's middleware reads
+        response.xframe_options_exempt = True  # what Django's middleware reads
         # Made for views, these mark the answer of any function.
         allow: Any = csp_replace({"frame-ancestors": origins})
         goes_to = [origin_of(self.campaign.return_url)] if self.campaign.return_url else []
@@ -209,5 +209,5 @@ def visit_to(campaign: Campaign, request: HttpRequest) -> Visit:
             visitor = Visitor(visitor.browser, pseudonym)
     if assignment:
         visitor = replace(visitor, assignment=assignment)
-    contributor = contributor_of(campaign, visitor.pseudonym)
-    return Visit(request, campaign, visitor, contributor, is_carried)
+    known_as = contributor_of(campaign, visitor.pseudonym)
+    return Visit(request, campaign, visitor, known_as, is_carried)

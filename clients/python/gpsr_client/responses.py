@@ -407,7 +407,8 @@ class Parse:
     def may_act(self) -> bool:
         """Whether the robot may carry out the plan, and can, without a word of the person: the joint plan of several
         commands, else the task plan of the best candidate."""
-        plan = self.joint_plan.plan if self.joint_plan else self.best and self.best.task_plan
+        alone = self.best.task_plan if self.best else None
+        plan = self.joint_plan.plan if self.joint_plan else alone
         return self.decision == "act" and plan is not None and plan.is_executable
 
     @property
