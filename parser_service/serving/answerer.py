@@ -479,6 +479,8 @@ class Answerer:
             reasons = (Objection(_TOO_MANY, message, 0, len(given.utterance)),)
         if decision is Decision.REFUSE or reasons:
             decision = Decision.ASK  # others can be done
+        if decision is Decision.ACT and self.stopping.in_(heard):
+            decision = Decision.CONFIRM  # of what was passed over between them
         return Answer(given, several, heard, readings, about, probability, decision, reasons)
 
     def write(self, answer: Answer) -> str:

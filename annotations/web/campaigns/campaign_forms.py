@@ -70,7 +70,7 @@ def address_field(label: str, help_text: str) -> forms.URLField:
 
 def parameter_field(label: str, help_text: str) -> forms.RegexField:
     return forms.RegexField(
-        PARAMETER,
+        rf"\A{PARAMETER}\Z",  # Django looks anywhere in the value
         label=label,
         required=False,
         help_text=help_text,

@@ -27,8 +27,8 @@ READING = {
     *("audit_labels", "benchmark", "backup", "expand_grammar", "export_split", "export_world"),
     *("export_rephrased", "export_vocabulary", "leakage", "parse", "parse_server", "serve", "work"),
 }
-# It makes an installation from a backup, whose log it becomes.
-RESTORING = {"restore"}
+# They make an installation: from a backup, whose log it becomes, or from an older version.
+RESTORING = {"restore", "migrate"}
 # They call record_command themselves.
 RECORDING = {"changepassword", "createsuperuser", "issue_token", "quickstart", "train"}
 

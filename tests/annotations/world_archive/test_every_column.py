@@ -34,8 +34,10 @@ LEFT_OUT = {
     "annotations.World.deletion_requested_at": "hides a world while it is imported or deleted",
     "annotations.Campaign.key": "the link of one site; the copy gets its own",
     "annotations.Campaign.completion_code": "a secret",
+    "annotations.Campaign.screened_out_code": "a secret",
     "annotations.Contributor.saves": "a limit of the last minute",
     "annotations.Contributor.saves_since": "a limit of the last minute",
+    "annotations.Submission.browser": "the copy has no page that asks for it",
     "annotations.Submission.read_by_run": RUNS,
     "annotations.Utterance.upload": "an upload can be undone only where it was made",
     "annotations.Utterance.deleted_at": "deleted utterances stay behind",
@@ -93,6 +95,7 @@ MEANT: dict[str, tuple[Any, Any]] = {
     "sample": ({}, {}),
     "names": ({"go": {"name": "NavigateTo", "arguments": {}}}, {}),
     "return_url": ("https://example.org/é", ""),
+    "screened_out_url": ("https://example.org/ü", ""),
     "currency": ("EUR", ""),
 }
 BOOKS: dict[type, tuple[str, str]] = {

@@ -119,6 +119,13 @@ def test_a_robot_that_is_unsure_of_one_command_repeats_all_of_them(tiny, post):
         assert each["candidates"][0]["english"] in answer["spoken"]
 
 
+def test_words_that_nobody_knows_between_commands_make_a_robot_ask_before_it_acts(tiny, post):
+    answer = ask(post, "find the tea. Asdf qwer. go to the kitchen")
+    assert [each["decision"] for each in answer["several"]] == ["act", "act"]
+    assert answer["decision"] == "confirm"
+    assert ask(post, "find the tea. My second wish is: go to the kitchen")["decision"] == "act"
+
+
 def test_of_more_commands_than_three_a_robot_asks_which(tiny, post):
     answer = post(
         {"utterance": "find the tea. go to the kitchen. find the tea. go to the bath"}
