@@ -12,7 +12,7 @@ from typing import Any
 # Keys of links, and all that a crowd market says of somebody, by whatever names.
 SECRET_ADDRESS = re.compile(
     r"(/join/|/password/[^/\s?]+/|[?&](?:PROLIFIC_PID|SESSION_ID|workerId|assignmentId)=)[^/\s?&]+"
-    r"|(/p/[^\s?]*\?)\S+"
+    r"|(/p/[^\s?]{0,200}\?)\S+"
 )
 REQUEST_ID: ContextVar[str] = ContextVar("request_id", default="")
 

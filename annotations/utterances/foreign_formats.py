@@ -190,7 +190,9 @@ def _of_conll(lines: Sequence[str]) -> Iterator[Said]:
 def _of_kaldi(lines: Sequence[str]) -> Iterator[Said]:
     told = [line.split(maxsplit=1)[1:] for line in lines]
     is_list = all(
-        len(each[0].split()) == 1 and _UTTERANCE_ID.search(each[0]) for each in told if each
+        len(each[0].split()) == 1 and _UTTERANCE_ID.fullmatch(each[0].strip())
+        for each in told
+        if each
     )
     if is_list or any(_RECORDING.search(line) for line in lines[:MOST_SAMPLED]):
         return

@@ -43,7 +43,7 @@ LATER = (5_000, 20_000)  # characters with which a text is measured that was slo
 NOTICED = 0.005
 NOISE = 0.02  # seconds of processor time below which nothing is said of growth
 LIMIT = 1.0  # seconds of processor time after which one text is given up
-GROWTH = 2.5
+GROWTH = 2.8  # between twice the time, for twice the characters, and four times
 LOOKS = (3, 30)  # calls at first, and again before a text is called slow; the fastest counts
 OFTEN = "a1 \n\t(){}<>\"'$@,=?:|\\/*#;%-_.λ⟨é"
 FAILING = ("", "\0", "!", "(", "\n\0")

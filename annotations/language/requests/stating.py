@@ -39,7 +39,7 @@ _THIRD = (
     rf"(?:{_PRONOUN}|{_any_of((*DETERMINERS, *NUMBERS))} {_NOUNS}{_WHERE}|(?:people|{_NAME})(?!\w))"
 )
 _SOMEBODY = rf"(?:(?:i|we|you)(?!\w)|{_THIRD})"
-_ADVERBS = rf"(?: (?:{_any_of(ADVERBS)}|[a-z]+ly(?!\w)))*"
+_ADVERBS = rf"(?: (?:{_any_of(ADVERBS)}|[a-z]+ly(?!\w))){{0,3}}"
 _PAST = rf"(?:(?!(?:named|called|dressed)\b)[a-z]{{2,}}ed|{_any_of(PAST_VERBS)})(?!\w)"
 _PARTICIPLE = rf"(?:{_PAST}|been(?!\w)|[a-z]{{2,}}en(?!\w))"
 _NOT = "(?:n't)?"
@@ -51,7 +51,7 @@ _IS_DUE = rf"(?!.* (?:to (?!{_any_of(DETERMINERS)}|{_NAME})|that ))"
 _THERE = rf"(?:{_any_of(PLACE_PREPOSITIONS | DETERMINERS)})"
 _JOINTS = ("and", "so", "but", "well", "because", "since", "that")
 _BEFORE = _any_of((*TIME_PHRASES, *ADVERBS, *THINKING_PHRASES, *_JOINTS))
-_OPENING = rf"(?:{_BEFORE},? )*"
+_OPENING = rf"(?:{_BEFORE},? ){{0,4}}"
 _UNREAL = r"(?:would|could|should|might|must) have"
 _STATEMENT = re.compile(
     rf"{_OPENING}(?:"
@@ -85,7 +85,7 @@ _BEGINNING = _any_of(
 )
 _FRAGMENT = re.compile(rf"{_OPENING}(?:(?:{_BEGINNING}|{_NAME}(?!\w)).*)?$")
 _SENTENCE = re.compile(r"[^.!?;…\n]+")
-_CLAUSES = re.compile(r"\s*(?:[,:–—\"“”]|(?<!\w)(?=(?:and|so|but|because|then)\s))\s*")
+_CLAUSES = re.compile(r"[,:–—\"“”]|(?<!\w)(?=(?:and|so|but|because|then)\s)")
 _LONGEST_CLAUSE = 200  # characters that are looked at
 
 

@@ -17,6 +17,7 @@ from django.core.serializers.json import DjangoJSONEncoder
 from django.db import DatabaseError, connection, models, transaction
 
 from annotations.models import Predicate, SemanticTemplate, User
+from annotations.models.short_texts import ShortTextField
 from annotations.models.worlds import Role
 from gpsr_site.backup.backup_checks import CODE, check_column, check_columns
 from gpsr_site.backup.backup_manifest import NAME
@@ -73,6 +74,8 @@ def test_nothing_beyond_a_limit_can_be_stored(traces):
     for model, field in COLUMNS:
         row = model._base_manager.order_by("pk").first()
         if row is None or field.primary_key or field.is_relation:
+            continue
+        if isinstance(field, ShortTextField):  # it cuts what is too long
             continue
         for value in beyond_the_limit(field):
             place = f"{model.__name__}.{field.name} = {str(value)[:20]}…"
