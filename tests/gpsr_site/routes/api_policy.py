@@ -220,7 +220,7 @@ API_POLICY = [
         for name in ("import", "import-competition", "import-pairs", "campaign-results")
     ),
     Rule("api:job-cancel", *admins(YES), method="post"),
-    Rule("api:job-answer", *admins(CLASH), method="post"),  # it asks nothing
+    Rule("api:job-answer", *admins(NO_JSON), method="post"),
     Rule("api:utterance-candidates", *annotators(YES)),
     # What is only checked
     *(
@@ -239,7 +239,7 @@ API_POLICY = [
     Rule("api:label-take-back", *annotators(CLASH), method="post"),  # it is of nobody
     Rule("api:work-item-take", NO_TOKEN, NOWHERE, YES, CLASH, YES, method="post"),
     Rule("api:work-item-skip", *members(CLASH), method="post"),  # nobody holds it
-    Rule("api:job-result", NO_TOKEN, *[NOWHERE] * 4),  # it has made no file
+    Rule("api:job-result", *members(CLASH)),  # it has not ended
     Rule("api:parse-jobs", *members(NO_JSON), method="post"),
     Rule("api:parse-wrong", *members(NO_JSON), method="post"),
     # Everybody with a role decides about labels in doubt, reviewers let them be looked for
