@@ -68,7 +68,7 @@ def entity_class_new(request: WorldRequest, world: World) -> HttpResponse:
 def class_colours(request: WorldRequest, world: World) -> HttpResponseBase:
     """Give the colours of the classes as a style sheet, which the pages of the world link to."""
     css = "".join(_rules(world.entity_classes.all()))
-    etag = f'"{sha256(css.encode()).hexdigest()[:32]}"'
+    etag = f'W/"{sha256(css.encode()).hexdigest()[:32]}"'
     response = get_conditional_response(
         request, etag, response=HttpResponse(css, content_type="text/css; charset=utf-8")
     )

@@ -269,7 +269,7 @@ def template_completion(request: WorldRequest, world: World, pk: int) -> HttpRes
     """Return the completions for templates of a task category. A browser may send the tag that it has."""
     category = get_object_or_404(TaskCategory, grammar__world=world, pk=pk)
 
-    @condition(etag_func=lambda request: f'"{completion_tag(category)}"')
+    @condition(etag_func=lambda request: f'W/"{completion_tag(category)}"')
     def answer(request: PageRequest) -> HttpResponse:
         return JsonResponse(completions_of(category))
 

@@ -49,7 +49,7 @@ class SchemaFile(SpectacularAPIView):
                 generator: Any = self.generator_class()
                 schema = generator.get_schema(public=True)
                 made: Any = request.accepted_renderer.render(schema, renderer_context={})
-                _made[kind] = made, f'"{hashlib.sha256(made).hexdigest()[:20]}"'
+                _made[kind] = made, f'W/"{hashlib.sha256(made).hexdigest()[:20]}"'
         content, tag = _made[kind]
         answer = HttpResponse(content, content_type=kind)
         name = f"{spectacular_settings.TITLE}.{request.accepted_renderer.format}"
