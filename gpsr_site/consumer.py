@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from billiard.exceptions import WorkerLostError
+from celery.exceptions import WorkerLostError
 from celery.worker import consumer, request, state
 
 logger = logging.getLogger(__name__)

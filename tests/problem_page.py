@@ -41,6 +41,7 @@ SAID = {
     "bad_rows": "Rows of the file cannot be read. `problems` names each with its line.",
     "entity_refused": "The entity that was offered does not fit the world. `detail` says why.",
     "in_use": "Something uses what was to be deleted. `detail` names it.",
+    "no_language_model": "No language model can be asked last here. `detail` says what is missing.",
     "no_language_model_server": "No server of a language model is set up. `detail` says how to name one.",
     "no_promoted_run": "Nothing answers in this world: it has neither templates nor a promoted run.",
     "not_imported": "The file has problems, and nothing of it was stored. `problems` names each with its place.",

@@ -52,7 +52,7 @@ def looks_plural(noun: str) -> bool:
 
 
 def spellings(noun: str) -> Iterator[str]:
-    """Yield what a noun phrase may be called in the plural, and in the singular if it is one; only its head changes.
+    """Yield what a noun phrase may be called in the plural, and in the singular if it is one; its head changes.
 
     The plural that is printed is the first one of a singular. Each is known again: a noun is among the spellings of
     its plural. Plurals that people write though they are none are among them, too: ``knifes``.
@@ -61,6 +61,11 @@ def spellings(noun: str) -> Iterator[str]:
     for spelling in dict.fromkeys((*_plurals(head), *_singulars(head))):
         if spelling != head:
             yield f"{before}{spelling}{rest}"
+    if rest:  # people say "tin of soups", too
+        start, _, last = noun.rpartition(" ")
+        yield from (
+            f"{start} {each}" for each in (*_plurals(last), *_singulars(last)) if each != last
+        )
 
 
 def article(noun: str) -> str:

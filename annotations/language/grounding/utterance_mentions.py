@@ -266,13 +266,9 @@ def unknown_phrases(anonymized: Anonymized, ontology: Ontology) -> Mapping[str, 
     places = [phrase for phrase, is_place, _ in found if is_place]
     names = [phrase for phrase, _, is_name in found if is_name]
     things = [phrase for phrase, is_place, is_name in found if not is_place and not is_name]
-    kinds = {
-        "name": names,
-        "location": places,
-        "room": places,
-        "object": things,
-        "category": things,
-    }
+    kinds = {"name": names}
+    kinds |= dict.fromkeys(("location", "room"), places)
+    kinds |= dict.fromkeys(("object", "category"), things)
     return {"": phrases} | {each: tuple(dict.fromkeys(of)) or phrases for each, of in kinds.items()}
 
 

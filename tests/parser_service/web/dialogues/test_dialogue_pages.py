@@ -30,7 +30,7 @@ def test_a_command_is_talked_about_learnt_and_kept(parse_server, browse):
     page = browse.post(PAGE, {"utterance": "bring me the flurb"}, follow=True)
     assert "Which object do you mean by “flurb”?" in text_of(page)
     row = Dialogue.objects.get()
-    assert '<option value="red cup">' in text_of(page) and not page.context["plan"].is_executable
+    assert '<option value="red cup">' in text_of(page) and not page.context["plan"]["is_executable"]
     address = f"{PAGE}{row.pk}/"
     page = browse.post(address, {"answer": "new", "version": 1}, follow=True)
     assert "Shall I bring you the flurb?" in text_of(page)
