@@ -288,8 +288,8 @@ def test_curly_quotes_and_odd_blanks_are_read_as_plain_ones(
     expect(report.get_by_text("not allowed")).to_have_count(0)
     page.get_by_role("button", name="Save", exact=True).click()
     page.wait_for_url(lambda url: "new" not in url)
-    saved = SemanticTemplate.objects.get(pattern="go to the {room}")
-    assert saved.form == repaired
+    saved = SemanticTemplate.objects.latest("pk")
+    assert (saved.pattern, saved.form) == ("go to the {room}", repaired)
 
 
 def test_the_help_stays_closed_once_it_is_closed(page_of, live_server, annotator):
