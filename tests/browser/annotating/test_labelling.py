@@ -149,10 +149,10 @@ def test_answers_outlive_the_session(label_page, live_server, annotator):
 
 def test_answers_without_a_connection_arrive_later(label_page, live_server):
     page = label_page
-    page.route("**/answer/", lambda route: route.abort())
+    page.context.set_offline(True)
     page.keyboard.press("1")
     expect(page.locator("#connection")).to_be_visible()
-    page.unroute("**/answer/")
+    page.context.set_offline(False)
     page.goto(f"{live_server.url}/w/home/label/")
     expect(page.locator(".label-last")).to_contain_text(SAID[0])
     wait_for(Utterance.objects.labelled().filter(text=SAID[0]).exists, "the answer is stored")
