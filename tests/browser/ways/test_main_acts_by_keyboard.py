@@ -83,7 +83,7 @@ def test_files_are_imported_and_their_commands_generated(
 
 def choose(page: Page, files: list[Path]) -> None:
     """Go to the field of files and fill it; the dialog that a key opens there is not the page's."""
-    field = page.locator("main input[type=file]")
+    field = page.locator("main [name=files]")
     tab_to(page, field)
     field.set_input_files(files)
 
