@@ -13,8 +13,7 @@ from annotations.language.grounding import may_fill
 from annotations.language.ontology import Ontology
 from annotations.language.plans import Lookup
 from annotations.language.predicates import Predicate
-from annotations.language.symbols import Wildcard, print_wildcard
-from annotations.language.symbols import walk as walk_symbols
+from annotations.language.symbols import Wildcard, print_wildcard, walk_symbols
 from annotations.language.templates import SemanticTemplate, TaskCategory
 
 

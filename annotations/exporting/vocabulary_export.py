@@ -14,7 +14,7 @@ from django.db import models
 from annotations.language.english import PRONOUNS, plural, spellings
 from annotations.language.ontology import Entity, Ontology
 from annotations.language.paraphrases import KnownWords
-from annotations.language.symbols import EntityClasses, Symbols, Text, Wildcard, walk
+from annotations.language.symbols import EntityClasses, Symbols, Text, Wildcard, walk_symbols
 from annotations.language.templates import TaskCategory
 from annotations.models import World
 from annotations.rows.from_rows import ontology_of, task_categories
@@ -151,7 +151,7 @@ def _words_of(categories: Iterable[TaskCategory]) -> set[str]:
 
 def _fixed_words(sequence: Symbols) -> set[str]:
     words: set[str] = set()
-    for symbol in walk(sequence, notes=False):
+    for symbol in walk_symbols(sequence, notes=False):
         if isinstance(symbol, Text):
             words.update(_WORD.findall(symbol.value.lower()))
         elif isinstance(symbol, Wildcard) and symbol.kind == "pron":

@@ -14,7 +14,7 @@ import resource
 import time
 
 from annotations.language.grammar import Grammar, read_productions, readable
-from annotations.language.symbols import Nonterminal, print_sequence, walk
+from annotations.language.symbols import Nonterminal, print_sequence, walk_symbols
 from annotations.language.templates import (
     Balance,
     Language,
@@ -43,7 +43,7 @@ def annotated_lines(grammar: Grammar) -> list[str]:
         for number, alternative in enumerate(grammar.alternatives(name)):
             inner = [
                 str(symbol)
-                for symbol in walk(alternative, notes=False)
+                for symbol in walk_symbols(alternative, notes=False)
                 if isinstance(symbol, Nonterminal) and symbol.name in large
             ]
             if len(set(inner)) == len(inner):

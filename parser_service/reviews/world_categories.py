@@ -10,7 +10,7 @@ from django.utils.text import slugify
 
 from annotations.language.errors import Refusal
 from annotations.models import World
-from parser_service.analysis import categories
+from parser_service.analysis.categories import DESCRIPTIONS, NAMES
 from parser_service.models import ErrorCategory, Review, Slice
 
 LONGEST_CODE = 40
@@ -29,11 +29,11 @@ def ensure_categories(world: World) -> dict[str, ErrorCategory]:
             ErrorCategory(
                 world=world,
                 code=code.value,
-                name=categories.NAMES[code],
-                description=categories.DESCRIPTIONS[code],
+                name=NAMES[code],
+                description=DESCRIPTIONS[code],
                 position=position,
             )
-            for position, code in enumerate(categories.ErrorCategory)
+            for position, code in enumerate(NAMES)
         ]
         # Whoever does the same at this moment makes the same rows.
         ErrorCategory.objects.bulk_create(made, ignore_conflicts=True)

@@ -13,7 +13,7 @@ from annotations.language.symbols import (
     Wildcard,
     print_sequence,
     print_wildcard,
-    walk,
+    walk_symbols,
     wildcard_names,
 )
 from annotations.language.templates import bare
@@ -63,7 +63,7 @@ def completions(
         symbol
         for alternatives in grammar.rules.values()
         for alternative in alternatives
-        for symbol in walk(alternative, notes=False)
+        for symbol in walk_symbols(alternative, notes=False)
         if isinstance(symbol, Wildcard)
     }
     plain = {bare(each) for each in written} | {Wildcard(name) for name in wildcard_names(classes)}

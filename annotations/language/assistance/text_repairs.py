@@ -22,7 +22,7 @@ from annotations.language.symbols import (
     Text,
     Wildcard,
     places_in_pattern,
-    walk,
+    walk_symbols,
     wildcard_names,
 )
 from annotations.language.templates import SemanticTemplate
@@ -153,7 +153,7 @@ def unheard(template: SemanticTemplate, grammar: Grammar) -> Iterator[RepairCand
         symbol.value
         for alternatives in grammar.rules.values()
         for alternative in alternatives
-        for symbol in walk(alternative, notes=False)
+        for symbol in walk_symbols(alternative, notes=False)
         if isinstance(symbol, Text)
     }
     for match in re.finditer(r"\{[^}]*+(?:\}|\Z)|\$\w+|[^\s(){}|,$]+", template.pattern_text):

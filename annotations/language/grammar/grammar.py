@@ -18,7 +18,7 @@ from annotations.language.grammar.grammar_problems import (
 )
 from annotations.language.grammar.graph import Traversal, length, lengths, reachable, traverse
 from annotations.language.grammar.productions import Production
-from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard, walk
+from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard, walk_symbols
 
 ROOT = "Main"
 
@@ -49,7 +49,7 @@ class Grammar:
                 dict.fromkeys(
                     symbol.name
                     for alternative in alternatives
-                    for symbol in walk(alternative, notes=True)
+                    for symbol in walk_symbols(alternative, notes=True)
                     if isinstance(symbol, Nonterminal)
                 )
             )
@@ -157,7 +157,7 @@ class Grammar:
         spoken: dict[Nonterminal | Wildcard, None] = {}
         waiting = [sequence]
         while waiting:
-            for symbol in walk(waiting.pop(), notes=False):
+            for symbol in walk_symbols(waiting.pop(), notes=False):
                 if isinstance(symbol, Text) or symbol in spoken:
                     continue
                 spoken[symbol] = None

@@ -37,7 +37,7 @@ from annotations.language.symbols.symbols import (
     Symbols,
     Text,
     Wildcard,
-    walk,
+    walk_symbols,
 )
 
 __all__ = [
@@ -74,6 +74,6 @@ __all__ = [
     "require_token",
     "slot_key",
     "split_head",
-    "walk",
+    "walk_symbols",
     "wildcard_names",
 ]

@@ -124,7 +124,7 @@ Symbol: TypeAlias = "Text | Nonterminal | Wildcard | Choice"
 Symbols: TypeAlias = "tuple[Symbol, ...]"
 
 
-def walk(sequence: Symbols, notes: bool) -> Iterator[Text | Nonterminal | Wildcard]:
+def walk_symbols(sequence: Symbols, notes: bool) -> Iterator[Text | Nonterminal | Wildcard]:
     """Yield every symbol of a sequence in order, including those inside choices, but not the choices.
 
     With ``notes`` it also enters the notes of wildcards.
@@ -132,8 +132,8 @@ def walk(sequence: Symbols, notes: bool) -> Iterator[Text | Nonterminal | Wildca
     for symbol in sequence:
         if isinstance(symbol, Choice):
             for alternative in symbol.alternatives:
-                yield from walk(alternative, notes)
+                yield from walk_symbols(alternative, notes)
             continue
         yield symbol
         if notes and isinstance(symbol, Wildcard):
-            yield from walk(symbol.meta, notes)
+            yield from walk_symbols(symbol.meta, notes)
