@@ -347,8 +347,8 @@ class Answerer:
         return cast("GrammarOracle | None", self.oracle.parser if self.oracle else None)
 
     def _judge(self, texts: Sequence[str]) -> list[float | None]:
-        """Return how well the learned part understands each text as one command; None for one that it does not, or of
-        which it leaves something out."""
+        """Return how well the learned part understands each text as one command; None for one that it does not, of
+        which it leaves something out, or that asks for nothing by itself, such as "Axel is in the kitchen"."""
         assert self.learned is not None
         answers = [
             self.judge(PartAnswer(text, text, self.learned, candidates))
@@ -356,7 +356,10 @@ class Answerer:
         ]
         return [
             None
-            if (of := each.about.evidence) is None or of.left_out or of.unknown_words
+            if each.about.objections
+            or (of := each.about.evidence) is None
+            or of.left_out
+            or of.unknown_words
             else each.readings[0].candidate.score
             for each in answers
         ]

@@ -261,7 +261,8 @@ class _Noisy(Everything):
         """Return the utterance with its safe changes; as it is where nothing would be left or it is too long."""
         if not self.tokens or len(self.tokens) > MOST_TOKENS:
             return HeardText(self.utterance)
-        self._named_at = {(arc.start, arc.end) for arc in self._entity_arcs()}
+        # Whatever the vocabulary has: what is a name as it was said is no other name.
+        self._named_at = {(start, end) for _, start, end in self._names_said()}
         taken: dict[int, ReadWords] = {}
         for start, stop, kind, heard in (*self._removed(), *self._mended()):
             if taken.keys().isdisjoint(range(start, stop)):

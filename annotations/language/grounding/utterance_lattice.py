@@ -327,6 +327,11 @@ class Everything:
                     yield from self._reference(reference, arc.start - is_after_article, arc.end)
 
     def _entity_arcs(self) -> Iterator[Arc]:
+        for key, start, end in self._names_said():
+            yield from self._named(key, start, end)
+
+    def _names_said(self) -> Iterator[tuple[str, int, int]]:
+        """Yield the names of the world that were said as they are, with their first and next token."""
         for start in range(len(self.tokens)):
             if not self._is_word(start):
                 continue
@@ -339,12 +344,11 @@ class Everything:
                 if words > LONGEST_NAME or signs > MOST_SIGNS or self.texts[end].startswith("<"):
                     break
                 # Signs at the end may be part of the name: C++.
-                yield from self._named(key, start, end + 1)
+                if key in self.reader.names:
+                    yield key, start, end + 1
 
     def _named(self, key: str, start: int, end: int) -> Iterator[Arc]:
-        names = self.reader.names.get(key, ())
-        if not names:
-            return
+        names = self.reader.names[key]
         first, last = self.tokens[start][0], self.tokens[end - 1][1]
         said = self.utterance[first:last].casefold()
         is_word = self._is_word(end - 1)
