@@ -18,7 +18,7 @@ TEXTS = {
 
 
 class Migration(migrations.Migration):
-    dependencies = [("annotations", "0044_draft_places")]
+    dependencies = [("annotations", "0001_squashed_0044")]
 
     operations = [
         migrations.AlterModelManagers(name="user", managers=[]),

@@ -12,8 +12,8 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('annotations', '0044_draft_places'),
-        ('parser_service', '0019_same_plan'),
+        ('annotations', '0001_squashed_0044'),
+        ('parser_service', '0001_squashed_0019'),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
 

@@ -10,7 +10,6 @@ from django.utils import timezone
 
 from annotations.models import Split, World
 from annotations.models.background import BackgroundWork, Status, WorkQuerySet
-from annotations.models.background import queue_choices as queue_choices  # for the migrations
 from annotations.models.background import status_choices as status_choices
 from annotations.models.short_texts import ShortTextField
 from parser_service.parsers.conditions import Protocol

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import io
-from importlib import import_module
-from types import SimpleNamespace
 
 import pytest
-from django.apps import apps
 from django.contrib.contenttypes.models import ContentType
-from django.db import connection
 from django.test import Client
 from django.urls import reverse
 
@@ -138,15 +134,6 @@ def test_nobody_is_kept_out_by_who_has_left_by_no_door(way, world, held, berta, 
     else:
         given = take(annotator, item) if way == "take" else assign(item, annotator, by=admin)
         assert (given.person, WorkItem.objects.get(pk=item.pk).places) == (annotator, 0)
-
-
-def test_what_was_orphaned_before_is_free_after_the_migration(world, held, berta, annotator):
-    kept = next_item(annotator, world)
-    Membership.objects.filter(user=berta).delete()
-    migration = import_module("annotations.migrations.0031_work_of_who_has_left")
-    migration.release(apps, SimpleNamespace(connection=connection))
-    assert list(Assignment.objects.held()) == [kept]
-    assert sorted(world.work_items.values_list("places", flat=True)) == [0, 1, 1]
 
 
 def test_a_world_that_is_imported_is_held_by_none_who_is_no_member(world, held, admin):

@@ -3,67 +3,58 @@
 from __future__ import annotations
 
 import sqlite3
-from pathlib import Path
+from collections.abc import Iterator
 
 import pytest
 
-from tests.annotations.commands.run_command import run_process
+from tests.gpsr_site.upgrading.installation import Installation, installed
 from tests.migrated import DATABASE
 
-OLDER = (("annotations", "0018"), ("parser_service", "0004"))
+# As the table of an installation holds them that was made before SQLite's tables had limits.
+COPY = (
+    "CREATE TEMP TABLE copied AS SELECT * FROM annotations_campaign",
+    "UPDATE copied SET id = 7, name = 'long', completion_code = printf('%900d', 0)",
+    "INSERT INTO annotations_campaign SELECT * FROM copied",
+    "UPDATE copied SET id = 8, name = 'bad' || char(0), completion_code = ''",
+    "INSERT INTO annotations_campaign SELECT * FROM copied",
+)
 
 
-@pytest.fixture(scope="module")
-def older(tmp_path_factory) -> Path:
-    """An installation of an older version with two utterances that do not fit, one of 900 characters and one with
+@pytest.fixture
+def older(tmp_path) -> Iterator[Installation]:
+    """An installation of 7eb91d0 with two campaigns that do not fit, one with a code of 900 characters and one with
     a NUL."""
-    folder = tmp_path_factory.mktemp("older")
-    for app, name in OLDER:
-        done = run_process(folder, "migrate", app, name, "--verbosity", "0")
-        assert done.returncode == 0, done.stderr
-    with sqlite3.connect(folder / DATABASE) as connection:
+    with installed("sqlite", tmp_path) as installation:
+        change(installation, *COPY)
+        yield installation
+
+
+def change(installation: Installation, *statements: str) -> None:
+    with sqlite3.connect(installation.folder / DATABASE) as connection:
         connection.execute("PRAGMA ignore_check_constraints = ON")
-        insert(
-            connection,
-            "annotations_world",
-            {"id": 1, "name": "home", "created_at": "2025-01-01 00:00:00"},
-        )
-        for key, text in ((7, "é" * 900), (8, "bring\0tea"), (9, "bring tea")):
-            insert(connection, "annotations_utterance", {"id": key, "world_id": 1, "text": text})
-    return folder
-
-
-def insert(connection: sqlite3.Connection, table: str, values: dict[str, object]) -> None:
-    """Insert a row; its other columns are empty."""
-    for _, name, kind, is_needed, default, is_key in connection.execute(
-        f"PRAGMA table_info({table})"
-    ):
-        if is_needed and default is None and not is_key and name not in values:
-            is_json = name in ("spans", "sample")
-            is_number = kind.split()[0] in ("integer", "bool", "bigint", "smallint")
-            is_time = kind == "datetime"
-            values[name] = "[]" if is_json else 0 if is_number else "2025-01-01" if is_time else ""
-    marks = ", ".join("?" * len(values))
-    connection.execute(
-        f"INSERT INTO {table} ({', '.join(values)}) VALUES ({marks})", tuple(values.values())
-    )
+        for statement in statements:
+            connection.execute(statement)
 
 
 @pytest.mark.processes
 def test_an_upgrade_names_the_rows_that_do_not_fit_and_goes_on_once_they_are_mended(older):
-    named = ("annotations.utterance, row 7: text has 900", "annotations.utterance, row 8: text has")
-    for command in (("migrate",), ("backup", older / "one.zip")):
-        done = run_process(older, *command)
+    backup = older.folder / "one.zip"
+    named = (
+        "annotations.campaign, row 7: completion_code has 900",
+        "annotations.campaign, row 8: name",
+    )
+    for command in (("migrate",), ("backup", backup)):
+        done = older.manage(*command)
         assert done.returncode == 1 and "Traceback" not in done.stderr
         assert all(each in done.stderr for each in named), done.stderr
-        assert "row 9" not in done.stderr and "WHERE id = 7" in done.stderr
-    assert not (older / "one.zip").exists()
-    with sqlite3.connect(older / DATABASE) as connection:
-        kept = dict(connection.execute("SELECT id, length(text) FROM annotations_utterance"))
-        assert kept[7] == 900
-        connection.execute("PRAGMA ignore_check_constraints = ON")
-        connection.execute("UPDATE annotations_utterance SET text = 'x' || id WHERE id < 9")
-    for command in (("migrate", "--verbosity", "0"), ("backup", older / "one.zip")):
-        done = run_process(older, *command)
+        assert "row 1:" not in done.stderr and "WHERE id = 7" in done.stderr
+    assert not backup.exists()
+    lengths = "SELECT id, length(completion_code) FROM annotations_campaign"
+    assert dict(older.execute(lengths))[7] == 900
+    change(
+        older, "UPDATE annotations_campaign SET completion_code = '', name = 'x' || id WHERE id > 1"
+    )
+    for command in (("migrate", "--verbosity", "0"), ("backup", backup)):
+        done = older.manage(*command)
         assert done.returncode == 0, done.stderr
-    assert (older / "one.zip").exists()
+    assert backup.exists()

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
 import pytest
-from django.apps import apps
 
 from annotations.language.errors import Refusal
 from annotations.models import Split, World
@@ -364,11 +361,3 @@ def test_a_proposal_is_declined_once(split, admin):
     with pytest.raises(Refusal) as refused:
         decline(split.world, row.pk, admin)
     assert refused.value.code == "proposal_decided"
-
-
-def test_installations_from_before_promotion_keep_their_best_run(split):
-    trained_run(split, spoken=0.4)
-    best = trained_run(split, seed=1, spoken=0.6)
-    score(trained_run(split, seed=2, spoken=None), 0.9, source="gen")
-    import_module("parser_service.migrations.0010_promotion").promote_the_best(apps, None)
-    assert promoted_run(split.world) == best
