@@ -5,12 +5,13 @@ from __future__ import annotations
 from django.urls import URLPattern, URLResolver, include, path
 from rest_framework.routers import SimpleRouter
 
-from annotations.web.background import job_rest
 from annotations.web.campaigns import campaign_rest, figure_rest, submission_rest
 from annotations.web.corpus import (
     command_rest,
+    export_rest,
     label_rest,
     paraphrase_rest,
+    split_rest,
     upload_rest,
     utterance_rest,
 )
@@ -27,18 +28,17 @@ from annotations.web.description import (
     vocabulary_rest,
 )
 from annotations.web.editing import comment_rest, history_rest, notice_rest
-from annotations.web.people import account_rest, member_rest, token_rest
-from annotations.web.queueing import (
+from annotations.web.labelling import (
     agreement_rest,
     audit_rest,
     queue_settings_rest,
     sending_rest,
     work_item_rest,
 )
+from annotations.web.people import account_rest, member_rest, token_rest
 from annotations.web.rest.root import ApiRoot
 from annotations.web.rest.schema_view import SchemaFile
-from annotations.web.splits import export_rest, split_rest
-from annotations.web.worlds import import_rest
+from annotations.web.worlds import import_rest, job_rest
 from annotations.web.worlds.world_rest import OneWorld, Worlds
 
 app_name = "api"

@@ -2,9 +2,14 @@
 
 from django.urls import path
 
-from annotations.web.background import job_pages
 from annotations.web.campaigns import campaign_pages, figure_pages, submission_pages
-from annotations.web.corpus import command_pages, paraphrase_pages, upload_pages, utterance_pages
+from annotations.web.corpus import (
+    command_pages,
+    paraphrase_pages,
+    split_pages,
+    upload_pages,
+    utterance_pages,
+)
 from annotations.web.description import (
     class_pages,
     coverage_pages,
@@ -24,10 +29,9 @@ from annotations.web.editing import (
     history_pages,
     rename_pages,
 )
+from annotations.web.labelling import agreement_pages, sending_pages, work_item_pages
 from annotations.web.people import audit_log_pages, member_pages
-from annotations.web.queueing import agreement_pages, sending_pages, work_item_pages
-from annotations.web.splits import split_pages
-from annotations.web.worlds import import_pages, world_pages
+from annotations.web.worlds import import_pages, job_pages, world_pages
 
 urlpatterns = [
     path("people/", member_pages.people, name="people"),

@@ -16,16 +16,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from annotations.language.forms import read_form
-from annotations.language.ontology import Ontology
-from annotations.language.predicates import infer_signatures
 from annotations.language.templates import generate, read_generator_folder
+from annotations.language.world import Ontology, infer_signatures
 from benchmarks.fresh_site import ROOT
+from parser_service.analysis.all_edits import generate_edits
 from parser_service.analysis.attractors import find_attractors
-from parser_service.analysis.categories import RunEvidence, propose_categories
+from parser_service.analysis.category_proposals import propose_categories
 from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads, confuse_slots
-from parser_service.analysis.edits import gather_facts, generate_edits, mine_pairs
 from parser_service.analysis.encoded_labels import encode
+from parser_service.analysis.error_evidence import RunEvidence
+from parser_service.analysis.facts import gather_facts
+from parser_service.analysis.mining import mine_pairs
 from parser_service.analysis.outcomes import MOST_CLUSTERS
 from parser_service.analysis.probe_texts import make_probes
 from parser_service.analysis.risk_coverage import risk_coverage

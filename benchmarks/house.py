@@ -43,7 +43,7 @@ class Module:
 
     @property
     def room(self) -> str:
-        """The package below the app that the module stands in, such as ``annotations.queueing``."""
+        """The package below the app that the module stands in, such as ``annotations.labelling``."""
         return ".".join(self.name.split(".")[:2])
 
     @cached_property

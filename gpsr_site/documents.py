@@ -24,7 +24,7 @@ from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
-from annotations import markdown
+from annotations.showing import markdown
 
 INDEX = "index"
 # What a document of each folder is called in a link.

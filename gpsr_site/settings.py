@@ -53,7 +53,7 @@ def _required_when_served(name: str, example: str) -> None:
 
 
 try:
-    from annotations.language import english  # noqa: F401  it reads GPSR_ENGLISH_DIR
+    from annotations.language import texts  # noqa: F401  it reads GPSR_ENGLISH_DIR
 except ValueError as error:
     raise ImproperlyConfigured(str(error)) from error
 
@@ -327,7 +327,7 @@ SPECTACULAR_SETTINGS = {
         "WorkSubjectKind": ["utterance", "template", "paraphrase"],
         "FindingSubjectKind": ["utterance", "paraphrase"],
         "AnswerDecision": ["act", "confirm", "ask", "refuse"],
-        "Encoding": "annotations.language.decoding.ENCODINGS",
+        "Encoding": "annotations.language.texts.decoding.ENCODINGS",
     },
     "SERVE_INCLUDE_SCHEMA": False,
     "SCHEMA_PATH_PREFIX": r"/api/v1",

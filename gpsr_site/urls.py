@@ -6,13 +6,13 @@ from django.contrib.auth.views import LogoutView
 from django.urls import URLPattern, URLResolver, include, path
 
 from annotations.rest_urls import urlpatterns as corpus_routes
-from annotations.web.background import job_pages
 from annotations.web.campaigns import public_pages
 from annotations.web.editing import comment_pages
 from annotations.web.editing.draft_pages import my_drafts
 from annotations.web.people import account_pages, own_account_pages
 from annotations.web.people.audit_log_pages import site_log
 from annotations.web.people.invitation_pages import join
+from annotations.web.worlds import job_pages
 from annotations.web.worlds.world_pages import world_import, world_new
 from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
 from gpsr_site.pages.document_pages import document, document_image, documents

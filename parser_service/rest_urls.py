@@ -5,20 +5,17 @@ from __future__ import annotations
 from django.urls import include, path
 from rest_framework.routers import SimpleRouter
 
-from parser_service.web.analyses import analysis_rest
-from parser_service.web.dialogues.dialogue_rest import DialogueViewSet
-from parser_service.web.labelling import answer_rest, audit_rest
-from parser_service.web.paraphrasing import against_rest, model_rest
-from parser_service.web.promotions.answerer_rest import OneAnswerer
-from parser_service.web.promotions.promotion_rest import PromotionViewSet
-from parser_service.web.results import result_rest
+from parser_service.web.labelling import against_rest, answer_rest, audit_rest, model_rest
+from parser_service.web.results import analysis_rest, result_rest
 from parser_service.web.results.slice_rest import SliceViewSet
 from parser_service.web.reviews import prediction_rest, review_rest
 from parser_service.web.reviews.error_category_rest import ErrorCategoryViewSet
-from parser_service.web.robots import robot_rest
 from parser_service.web.runs import run_rest
-from parser_service.web.serving import joint_rest
+from parser_service.web.serving import joint_rest, robot_rest
+from parser_service.web.serving.answerer_rest import OneAnswerer
+from parser_service.web.serving.dialogue_rest import DialogueViewSet
 from parser_service.web.serving.parsing_rest import ParseJobs, ParseRoute
+from parser_service.web.serving.promotion_rest import PromotionViewSet
 
 router = SimpleRouter(use_regex_path=False)
 router.register("runs", run_rest.RunViewSet, "run")

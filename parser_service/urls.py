@@ -2,21 +2,32 @@
 
 from django.urls import path
 
-from parser_service.web.analyses import (
+from parser_service.web.labelling import (
+    against_pages,
+    audit_pages,
+    label_pages,
+    model_pages,
+    suggestion_pages,
+)
+from parser_service.web.results import (
     analysis_pages,
+    compare_pages,
     default_pages,
+    report_pages,
+    result_pages,
     sensitivity_pages,
+    slice_pages,
     tryout_pages,
 )
-from parser_service.web.dialogues import dialogue_pages
-from parser_service.web.labelling import audit_pages, label_pages, suggestion_pages
-from parser_service.web.paraphrasing import against_pages, model_pages
-from parser_service.web.promotions import promotion_pages
-from parser_service.web.results import compare_pages, report_pages, result_pages, slice_pages
 from parser_service.web.reviews import error_category_pages, prediction_pages, review_pages
-from parser_service.web.robots import robot_pages
 from parser_service.web.runs import learning_curve_pages, new_run_pages, run_pages
-from parser_service.web.serving import joint_pages, playground_pages
+from parser_service.web.serving import (
+    dialogue_pages,
+    joint_pages,
+    playground_pages,
+    promotion_pages,
+    robot_pages,
+)
 
 urlpatterns = [
     path("dialogue/", dialogue_pages.dialogues, name="dialogues"),

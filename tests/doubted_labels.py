@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from annotations.label_audit.audit_findings import SuspectPair
-from annotations.language.label_errors import Finding, LabelledPair, Reason, Suspect
+from annotations.labelling.audit_findings import SuspectPair
+from annotations.language.corpus.label_errors import Finding, LabelledPair, Reason, Suspect
 from annotations.models import Paraphrase, Utterance
 from tests.sample_world import make_paraphrase
 

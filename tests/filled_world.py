@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from annotations.background.progress import UNWATCHED
-from annotations.commenting import SUBJECTS, add_comment
+from annotations.editing.commenting import SUBJECTS, add_comment
 from annotations.editing.edits import add, change, delete
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.collecting import collect
-from annotations.language.dialogue import Offer
+from annotations.labelling.enqueuing import refill, set_share
+from annotations.labelling.item_answers import answer
+from annotations.language.plans import Offer
 from annotations.models import (
     AuditEntry,
     Entity,
@@ -25,20 +27,18 @@ from annotations.models import (
 from annotations.models.background import Status
 from annotations.models.splits import Part
 from annotations.models.worlds import Role
-from annotations.queueing.enqueuing import refill, set_share
-from annotations.queueing.item_answers import answer
-from parser_service.analyses.analysis_job import analyse
-from parser_service.analyses.tryout_answers import ask
-from parser_service.dialogues.conversation import reply, start
-from parser_service.dialogues.entity_offers import offer, refuse
 from parser_service.models import Promotion, PromotionState, Slice, TrainingRun
-from parser_service.promotions.promoting import promote
+from parser_service.reviews.analysis_job import analyse
 from parser_service.reviews.category_proposals import propose_for_run
 from parser_service.reviews.tagging import tag, write_note
+from parser_service.reviews.tryout_answers import ask
 from parser_service.reviews.world_categories import ensure_categories
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.training.split_pairs import pairs_of
-from parser_service.runs.training.train_run import make_parser
+from parser_service.runs.promoting import promote
+from parser_service.runs.split_pairs import pairs_of
+from parser_service.runs.train_run import make_parser
+from parser_service.serving.conversation import reply, start
+from parser_service.serving.entity_offers import offer, refuse
 from tests.doubted_labels import doubt
 
 SAID = ["bring me the tea", "go to the kitchen now", "where is my milk"]

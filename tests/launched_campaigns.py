@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from annotations.campaigns.launching import PromptChoice, launch
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.starter_world import STARTER_FOLDER
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
 from annotations.models import Campaign, User, World
-from annotations.worlds.starter_world import STARTER_FOLDER
 
 
 def fill_household(world: World) -> World:

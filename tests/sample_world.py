@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from annotations.exchange.generator_import import import_generator
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
 from annotations.models import (
     Comment,
     EntityClass,
@@ -23,8 +23,8 @@ from parser_service.analysis.outcomes import outcomes_of
 from parser_service.analysis.scores import Judgement
 from parser_service.models import EpochMetric, Evaluation, Prediction, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.split_pairs import cluster_of
+from parser_service.runs import run_requests
+from parser_service.runs.split_pairs import cluster_of
 from tests.annotations.conftest import TINY, as_bytes
 from tests.parser_service.made_up import make_split
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from annotations.language.symbols import DEFAULT_CLASSES, HUES
+from annotations.language.forms import DEFAULT_CLASSES, HUES
 
 TOKENS = Path(__file__).resolve().parent.parent / "static" / "css" / "tokens.css"
 PAIR = re.compile(r"--([\w-]+): light-dark\((#[0-9a-f]{6}), (#[0-9a-f]{6})\);")

@@ -19,9 +19,9 @@ from typing import Any
 
 import pytest
 
-from annotations.language.predicates import ArgumentKind
-from annotations.language.symbols import DEFAULT_CLASSES
-from annotations.language.symbols.entity_classes import RESERVED
+from annotations.language.forms import DEFAULT_CLASSES
+from annotations.language.forms.entity_classes import RESERVED
+from annotations.language.world import ArgumentKind
 
 ROOT = Path(__file__).resolve().parent.parent
 ROOMS = (
@@ -33,9 +33,9 @@ ROOMS = (
     "clients",
     "templates",
 )
-THE_FILE = ROOT / "annotations/language/symbols/entity_classes.toml"
+THE_FILE = ROOT / "annotations/language/forms/entity_classes.toml"
 # What the files of others, and the commands in them, are made of.
-TEXTS = ("annotations/starter", "annotations/language/english/data/sample_commands.toml")
+TEXTS = ("annotations/starter", "annotations/language/texts/data/sample_commands.toml")
 TOKENS = frozenset(DEFAULT_CLASSES.tokens)
 MOST_IN_A_LIST, MOST_KEYS = 2, 3
 # Class names in a row, with quotation marks, commas, bars, colons and the like between them.

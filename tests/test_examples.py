@@ -20,8 +20,8 @@ from pathlib import Path
 import pytest
 from django.core.management import call_command, get_commands, load_command_class
 
+from annotations.exchange.starter_world import STARTER_WORLD, load_starter_world
 from annotations.models import ApiToken, Entity, World
-from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from parser_service.models import TrainingRun
 from tests.clients.conftest import CLIENT
 from tests.parser_service.live_server import parse_server  # noqa: F401

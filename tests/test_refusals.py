@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from django.core.exceptions import ValidationError
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 
 ROOT = Path(__file__).parents[1]
 MODULES = [
@@ -22,9 +22,9 @@ MODULES = [
 # Modules that check what a programmer gives them.
 CHECK_ARGUMENTS = (
     "parser_service/analysis/",
-    "parser_service/slices/selecting.py",
+    "parser_service/results/selecting.py",
     "parser_service/parsers/linear.py",
-    "parser_service/parsers/new_forms/short.py",
+    "parser_service/parsers/short.py",
     "parser_service/neural/ranker/form_ranker.py",
     "parser_service/neural/t5/spelling.py",
     "parser_service/neural/t5/t5_parser.py",

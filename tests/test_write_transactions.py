@@ -10,8 +10,8 @@ import pytest
 from django.db import connection, transaction
 
 from annotations import background
-from annotations.jobs import request_job
-from annotations.jobs.carrying_out import carry_out
+from annotations.background.carrying_out_jobs import carry_out
+from annotations.background.requesting import request_job
 from annotations.labelling.collecting import collect
 from annotations.models import Job, JobKind
 from tests.write_transactions import ROOT, WHOLE, measured_transactions
@@ -37,7 +37,9 @@ def test_a_job_may_keep_others_from_writing_for_a_shorter_time(world):
     job = request_job(JobKind.PROPOSE, "home", None)
     with measured_transactions(longer_than=0) as lasted:
         carry_out(background.claim("a worker", "quick", Job, job))
-    (ended,) = [each for each in lasted if each.place == "annotations/jobs/carrying_out.py:_do"]
+    (ended,) = [
+        each for each in lasted if each.place == "annotations/background/carrying_out_jobs.py:_do"
+    ]
     assert ended.is_in_job
     assert replace(ended, seconds=0.3).is_too_long
     assert not replace(ended, seconds=0.3, is_in_job=False).is_too_long

@@ -32,10 +32,10 @@ LONGEST = 1.0  # in requests and commands
 # with few statements.
 WHOLE = {
     "annotations/generation/generating.py:_generate_once": "commands and forms change together",
-    "annotations/importing/generator_import.py:_compare_and_store": "a grammar and its templates are imported whole",
-    "annotations/importing/pair_import.py:_store": "splits and the paraphrases in them are imported whole",
-    "annotations/splits/freezing.py:freeze_split": "a split is there whole, and never changes",
-    "annotations/splits/renewing.py:freeze_anew": "a split is there whole, and never changes",
+    "annotations/exchange/generator_import.py:_compare_and_store": "a grammar and its templates are imported whole",
+    "annotations/exchange/pair_import.py:_store": "splits and the paraphrases in them are imported whole",
+    "annotations/generation/freezing.py:freeze_split": "a split is there whole, and never changes",
+    "annotations/generation/renewing.py:freeze_anew": "a split is there whole, and never changes",
 }
 
 

@@ -19,7 +19,7 @@ from annotations.background.outages import (
     outage_sentence,
 )
 from annotations.background.recovery import return_to_queue
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.models.background import BackgroundWork
 
 logger = logging.getLogger(__name__)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from django.db import DatabaseError
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
 POSTGRES_FULL, SQLITE_FULL = "53100", sqlite3.SQLITE_FULL

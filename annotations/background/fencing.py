@@ -19,7 +19,7 @@ from django.db.models.functions import Now
 from django.utils import timezone
 
 from annotations.background.outages import outlasting
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models.background import LEASE, BackgroundWork, Status, rows_of
 
 Work = TypeVar("Work", bound=BackgroundWork)

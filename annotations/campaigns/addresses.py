@@ -6,7 +6,7 @@ import re
 from http import HTTPStatus
 from urllib.parse import urlsplit
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.people.local_names import is_address, is_local_name, is_local_site
 
 MOST_ORIGINS = 5

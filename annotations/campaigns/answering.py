@@ -11,12 +11,9 @@ from django.utils import timezone
 from annotations.campaigns.limits import count_save
 from annotations.campaigns.tasks import CampaignOver, close_if_full
 from annotations.labelling.proposal_requests import request_readings
-from annotations.language.errors import Position, Refusal
-from annotations.language.limits import require_writable
-from annotations.language.paraphrases import (
+from annotations.language.corpus import (
     Flag,
     FreeCommand,
-    KnownWords,
     Named,
     Rewrite,
     RewriteWarning,
@@ -25,7 +22,13 @@ from annotations.language.paraphrases import (
     free_command_flags,
     rewrite_flags,
 )
-from annotations.language.text import normalise_line
+from annotations.language.texts import (
+    KnownWords,
+    Position,
+    Refusal,
+    normalise_line,
+    require_writable,
+)
 from annotations.models import CampaignPrompt, Contributor, Submission
 from annotations.models.campaigns import ContributorKind, SubmissionKind, SubmissionStatus
 from annotations.models.corpus import MOST_CHARACTERS

@@ -9,7 +9,7 @@ from typing import Any
 from django.db.models import QuerySet
 
 from annotations.campaigns.tasks import Dealer
-from annotations.exporting.split_export import csv_lines
+from annotations.exchange.split_export import csv_lines
 from annotations.language.corpus import write_triples
 from annotations.models import Campaign, Submission
 from annotations.rows.synchronise import batches

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.db import transaction
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Campaign
 from annotations.models.campaigns import ContributorKind
 

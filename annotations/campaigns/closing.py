@@ -11,7 +11,7 @@ from django.utils import timezone
 
 from annotations.campaigns.moderation import hand_on, heir_of
 from annotations.campaigns.tasks import is_full
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import (
     Campaign,
     Comment,

@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass
 from statistics import quantiles
 
-from annotations.language.agreement import wilson_interval
+from annotations.language.corpus import wilson_interval
 from annotations.models import Campaign, Contributor, Submission, World
 from annotations.models.campaigns import SubmissionKind, SubmissionStatus
 

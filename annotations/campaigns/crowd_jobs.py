@@ -5,16 +5,16 @@ from __future__ import annotations
 from http import HTTPStatus
 from typing import Any
 
+from annotations.background.job_files import kept_uploads
+from annotations.background.requesting import request_job
+from annotations.background.watching import JobProgress
 from annotations.campaigns.crowd_results import new_campaign, plan_results, store_results
-from annotations.importing.source_files import UploadedFile, read_one_file
-from annotations.jobs.files import kept_uploads
-from annotations.jobs.requesting import request_job
-from annotations.jobs.watching import JobProgress
+from annotations.exchange.source_files import UploadedFile, read_one_file
+from annotations.labelling.upload_reading import decode_upload
 from annotations.language.corpus import CrowdTable, read_crowd_results
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts import LanguageError, Refusal
 from annotations.models import Campaign, Job, JobKind, User, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.utterances.upload_reading import decode_upload
 
 MOST_BYTES = 60_000_000  # of a table, out of its archive
 _TABLES = (".csv", ".tsv")

@@ -16,15 +16,13 @@ from annotations.background.progress import UNWATCHED, Progress
 from annotations.campaigns.answering import MOST_COMPARED, named_in
 from annotations.campaigns.launching import MOST_PROMPTS, row_of
 from annotations.campaigns.pseudonyms import pseudonym_of
-from annotations.importing.prompt_sources import SourceFinder
-from annotations.language.corpus import Assignment, CrowdRewrite, CrowdTable
-from annotations.language.errors import Position, Problem, Refusal, error_at, warning_at
-from annotations.language.forms import read_form
-from annotations.language.grounding import ground_text
-from annotations.language.paraphrases import (
+from annotations.exchange.prompt_sources import SourceFinder
+from annotations.language.corpus import (
+    Assignment,
+    CrowdRewrite,
+    CrowdTable,
     Flag,
     FreeCommand,
-    KnownWords,
     Named,
     Rewrite,
     bare_words,
@@ -32,7 +30,17 @@ from annotations.language.paraphrases import (
     free_command_flags,
     rewrite_flags,
 )
-from annotations.language.text import normalise_line
+from annotations.language.forms import read_form
+from annotations.language.grounding import ground_text
+from annotations.language.texts import (
+    KnownWords,
+    Position,
+    Problem,
+    Refusal,
+    error_at,
+    normalise_line,
+    warning_at,
+)
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission, User, World
 from annotations.models.campaigns import ContributorKind, SubmissionKind
 from annotations.rows.from_rows import ontology_of

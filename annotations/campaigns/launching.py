@@ -13,14 +13,12 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count
 
 from annotations.generation.grounded_pairs import GroundedCommands, commands_to_ground
-from annotations.language.english import CHECK_WORDS
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.corpus import Named, entities_of
 from annotations.language.forms import canonical_text
 from annotations.language.grounding import Grounded
-from annotations.language.ontology import Ontology
-from annotations.language.paraphrases import Named, entities_of
-from annotations.language.predicates import gloss
 from annotations.language.templates import Expansion
+from annotations.language.texts import CHECK_WORDS, LanguageError, Refusal
+from annotations.language.world import Ontology, gloss
 from annotations.models import Campaign, CampaignPrompt, User, World
 from annotations.models.campaigns import Balance, Wording
 from annotations.rows.from_rows import ontology_of, predicates_of

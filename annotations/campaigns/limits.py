@@ -15,7 +15,7 @@ from http import HTTPStatus
 from django.db.models import F
 from django.utils import timezone
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Campaign, Contributor
 from annotations.models.campaigns import ContributorKind
 from annotations.people.rate_limits import Rate

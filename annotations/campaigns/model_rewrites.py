@@ -11,7 +11,7 @@ from django.utils import timezone
 
 from annotations.campaigns.answering import flags_of, named_in
 from annotations.campaigns.pseudonyms import pseudonym_of
-from annotations.language.paraphrases import FlagCode, Named, instructions_version
+from annotations.language.corpus import FlagCode, Named, instructions_version
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
 from annotations.models.campaigns import ContributorKind, SubmissionKind, SubmissionStatus
 

@@ -10,16 +10,14 @@ from django.utils import timezone
 
 from annotations.campaigns.answering import named_in
 from annotations.editing.edits import add_many, delete
-from annotations.label_audit.audit_findings import doubt
+from annotations.labelling.audit_findings import doubt
 from annotations.labelling.collecting import collect, find_known
 from annotations.labelling.form_check import canonical_label
-from annotations.language.corpus import distance
-from annotations.language.errors import Position, Refusal
+from annotations.labelling.utterance_deletion import delete_utterances
+from annotations.language.corpus import FlagCode, distance, lost_entities
 from annotations.language.forms import canonical_text, read_form
 from annotations.language.grounding import ground_like
-from annotations.language.limits import require_writable
-from annotations.language.paraphrases import FlagCode, lost_entities
-from annotations.language.text import normalise_line
+from annotations.language.texts import Position, Refusal, normalise_line, require_writable
 from annotations.models import (
     Origin,
     Paraphrase,
@@ -31,7 +29,6 @@ from annotations.models import (
 )
 from annotations.models.campaigns import SubmissionKind, SubmissionStatus
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.utterances.utterance_deletion import delete_utterances
 
 MOST_AT_ONCE = 500  # submissions of one decision: the world is held meanwhile
 

@@ -12,11 +12,8 @@ from statistics import fmean
 
 from django.db.models import Count
 
-from annotations.language.paraphrases import (
-    expected_vocabulary,
-    folded_words,
-    vocabulary_growth,
-)
+from annotations.language.corpus import expected_vocabulary, vocabulary_growth
+from annotations.language.texts import folded_words
 from annotations.models import Campaign, World
 from annotations.models.campaigns import ContributorKind
 

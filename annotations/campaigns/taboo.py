@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from annotations.language.english import COURTESY_WORDS, DETERMINERS, PLACE_PREPOSITIONS
-from annotations.language.paraphrases import folded_words
+from annotations.language.texts import COURTESY_WORDS, DETERMINERS, PLACE_PREPOSITIONS, folded_words
 from annotations.models import Submission
 from annotations.models.campaigns import SubmissionKind
 

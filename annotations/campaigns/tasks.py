@@ -15,7 +15,7 @@ from django.db.models import Count, Max, Q
 from django.utils import timezone
 
 from annotations.campaigns.limits import require_share
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Campaign, CampaignPrompt, Contributor, Submission
 from annotations.models.campaigns import Balance, ContributorKind, SubmissionKind
 

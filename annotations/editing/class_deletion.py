@@ -6,9 +6,9 @@ from http import HTTPStatus
 
 from django.db import transaction
 
-from annotations.checking.class_uses import why_kept
 from annotations.editing.edits import delete
-from annotations.language.errors import Refusal
+from annotations.generation.class_uses import why_kept
+from annotations.language.texts import Refusal
 from annotations.models import EntityClass, User, World
 
 

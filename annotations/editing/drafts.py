@@ -9,7 +9,7 @@ from django.db import models, transaction
 from django.utils import timezone
 
 from annotations.editing.once_keys import made_before
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Draft, User, World
 from annotations.models.editing import LONGEST_DEVICE, LONGEST_PAGE, NEW
 

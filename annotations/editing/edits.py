@@ -16,11 +16,11 @@ from django.core.exceptions import ValidationError
 from django.db import IntegrityError, models, transaction
 from django.db.models import Max
 
-from annotations.checking.world_problems import check_again
 from annotations.editing.drafts import discard_draft_of_new
 from annotations.editing.once_keys import made_before, remember
 from annotations.generation.up_to_date import start_update
-from annotations.language.errors import Refusal
+from annotations.generation.world_problems import check_again
+from annotations.language.texts import Refusal
 from annotations.models import Editable, User, World
 from annotations.models.editing import HistoryEntry, Placed
 from annotations.rows.history import (

@@ -10,9 +10,9 @@ from typing import Any
 from django.db import transaction
 from django.db.models import QuerySet
 
-from annotations.checking.recipe_check import RowModel
-from annotations.language.errors import Refusal
-from annotations.language.recipes import DEFAULT_BOOK, RecipeBook, ShippedBook, shipped_books
+from annotations.generation.recipe_check import RowModel
+from annotations.language.plans import DEFAULT_BOOK, RecipeBook, ShippedBook, shipped_books
+from annotations.language.texts import Refusal
 from annotations.models import Primitive, Recipe, User, World
 from annotations.rows.history import ADDED, CHANGED, DELETED, keep, keep_first
 

@@ -6,9 +6,9 @@ from http import HTTPStatus
 
 from django.db import transaction
 
-from annotations.checking.recipe_check import why_primitive_is_kept
 from annotations.editing.edits import delete
-from annotations.language.errors import Refusal
+from annotations.generation.recipe_check import why_primitive_is_kept
+from annotations.language.texts import Refusal
 from annotations.models import Primitive, User, World
 
 

@@ -8,10 +8,10 @@ from datetime import datetime
 from itertools import pairwise
 from typing import Any
 
-from annotations.form_presentation import Pieces, compare
 from annotations.models import User, World
 from annotations.rows.history import AS_IMPORTED, DELETED, what_happened
 from annotations.rows.row_kinds import FORM_FIELDS, EditableKind, as_text, label_of
+from annotations.showing.form_presentation import Pieces, compare
 
 MOST_SHOWN = 30
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from annotations import models
 from annotations.generation.kept_expansions import generate_at_once
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import annotated_categories
 
 

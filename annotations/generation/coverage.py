@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from annotations import models
 from annotations.generation.kept_expansions import expansions_of
-from annotations.language.errors import LanguageError
 from annotations.language.templates import TaskCategory
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import task_categories
 
 SAMPLES = 6

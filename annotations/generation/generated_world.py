@@ -16,7 +16,6 @@ from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.coverage import count_coverage, store_coverage
 from annotations.generation.template_problems import remarks_on_templates, store_remarks
-from annotations.language.errors import Problem, warning_at
 from annotations.language.forms import depth, head_predicate, read_form
 from annotations.language.templates import (
     DEFAULT_LIMIT,
@@ -25,6 +24,7 @@ from annotations.language.templates import (
     Generated,
     SampleNote,
 )
+from annotations.language.texts import Problem, warning_at
 from annotations.models.description import ProblemSubject
 from annotations.rows.from_rows import AnnotatedCategory
 from annotations.rows.staging import Staging

@@ -7,12 +7,11 @@ from typing import Any
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.background.requesting import request_job_once
+from annotations.background.watching import JobProgress
 from annotations.generation.complexity import Complexity, complexity
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.language_size import is_large, make_commands
-from annotations.jobs.requesting import request_job_once
-from annotations.jobs.watching import JobProgress
-from annotations.language.errors import LanguageError
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     Balance,
@@ -20,6 +19,7 @@ from annotations.language.templates import (
     SampleNote,
     SampleRequest,
 )
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import AnnotatedCategory, annotated_categories
 from annotations.rows.synchronise import Changes
 

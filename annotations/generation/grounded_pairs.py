@@ -7,10 +7,8 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from random import Random
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import canonical_text
 from annotations.language.grounding import Grounded, ground
-from annotations.language.ontology import Ontology
 from annotations.language.templates import (
     Derivation,
     Expansion,
@@ -19,6 +17,8 @@ from annotations.language.templates import (
     TaskCategory,
     generate,
 )
+from annotations.language.texts import LanguageError
+from annotations.language.world import Ontology
 from annotations.models import World
 from annotations.rows.from_rows import annotated_categories, ontology_of
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 
-from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, readable
-from annotations.language.predicates import Predicate
 from annotations.language.templates import (
     DEFAULT_LIMIT,
     BoundedCache,
@@ -19,6 +17,8 @@ from annotations.language.templates import (
     generate,
     generation_size,
 )
+from annotations.language.texts import LanguageError, Problem
+from annotations.language.world import Predicate
 
 # Pairs of a world that a request brings up to date: about two seconds on one core (docs/design/generation.md).
 MOST_AT_ONCE = 30_000

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 
 from annotations import models
-from annotations.jobs.weight import MOST_COMMANDS
-from annotations.language.errors import LanguageError
+from annotations.background.job_weight import MOST_COMMANDS
 from annotations.language.templates import (
     BoundedCache,
     Generated,
@@ -16,6 +15,7 @@ from annotations.language.templates import (
     TaskCategory,
     generate,
 )
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import task_categories
 
 # The content of task categories → the number of derivations.

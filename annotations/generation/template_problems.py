@@ -8,11 +8,15 @@ from typing import TypeAlias
 
 from annotations import models
 from annotations.generation.kept_expansions import checker_of, problems_of
-from annotations.language.assistance import read_known_sides
-from annotations.language.errors import LanguageError
+from annotations.language.forms import EntityClasses
 from annotations.language.grammar import CHECK_STEPS, Budget
-from annotations.language.symbols import EntityClasses
-from annotations.language.templates import Generated, TemplateChecker, shared_problems
+from annotations.language.templates import (
+    Generated,
+    TemplateChecker,
+    read_known_sides,
+    shared_problems,
+)
+from annotations.language.texts import LanguageError
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import (
     AnnotatedCategory,

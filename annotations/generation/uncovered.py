@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 from annotations import models
 from annotations.generation.coverage import known_commands
-from annotations.language.errors import LanguageError, Position, Problem, warning_at
 from annotations.language.grammar import Budget, Grammar, passages
 from annotations.language.templates import BoundedCache
+from annotations.language.texts import LanguageError, Position, Problem, warning_at
 from annotations.rows.from_rows import task_categories
 
 # Derivations of one task category that a page looks at: about a fifth of a second of processor time.

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from django.db import connection
 
 from annotations import models
+from annotations.background.requesting import request_job
 from annotations.generation.generated_world import GeneratedWorld, counters_of
 from annotations.generation.kept_expansions import generate_at_once
 from annotations.generation.language_size import is_large, make_commands
-from annotations.jobs.requesting import request_job
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import annotated_categories
 from annotations.rows.synchronise import Changes
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from annotations import models
 from annotations.generation.kept_expansions import STEPS_AT_ONCE, expansions_of, generate_at_once
 from annotations.generation.language_size import language_size
-from annotations.language.errors import LanguageError
 from annotations.language.grammar import Budget, readable
 from annotations.language.templates import DEFAULT_LIMIT
+from annotations.language.texts import LanguageError
 from annotations.rows.from_rows import task_categories
 
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 
 from annotations import models
 from annotations.generation.kept_expansions import generate_at_once
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError
+from annotations.generation.stale import StaleSplits, stale_splits
 from annotations.language.templates import Consequences, GeneratedState, consequences_of
+from annotations.language.texts import LanguageError, say_count
 from annotations.models.description import TemplateStatus
 from annotations.rows.from_rows import Lines, annotated_categories, ready_templates
-from annotations.splits.stale import StaleSplits, stale_splits
 
 NEW = 0  # in the place of the key that a new template has not got yet
 

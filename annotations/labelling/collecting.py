@@ -12,9 +12,14 @@ from django.utils import timezone
 
 from annotations.labelling.entity_spans import anonymized_by, anonymizer_of
 from annotations.labelling.proposal_requests import request_proposals
-from annotations.language.errors import LanguageError, Position, Problem, error_at
-from annotations.language.limits import require_writable
-from annotations.language.text import normalise_line
+from annotations.language.texts import (
+    LanguageError,
+    Position,
+    Problem,
+    error_at,
+    normalise_line,
+    require_writable,
+)
 from annotations.models import (
     Entity,
     Label,

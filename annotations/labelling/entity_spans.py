@@ -9,8 +9,8 @@ from django.db import transaction
 
 from annotations.editing.edits import change, change_many
 from annotations.labelling.label_answers import hold_utterance
-from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymizer
+from annotations.language.texts import Refusal
 from annotations.models import Entity, User, Utterance, World
 from annotations.rows.from_rows import ontology_of
 from annotations.rows.history import keep_change

@@ -6,24 +6,36 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from annotations.checking.assistance import shown_problem
-from annotations.language.assistance import Sides, format_form, read_known_sides, with_repairs
-from annotations.language.errors import LanguageError, Offsets, Position, Problem, warning_at
+from annotations.generation.assistance import shown_problem
 from annotations.language.forms import (
     CLASS_TOKEN,
     Constant,
     Form,
+    Nonterminal,
     Unknown,
+    Wildcard,
     canonical_text,
     read_form,
     to_reading,
     walk,
 )
 from annotations.language.grammar import Grammar
-from annotations.language.limits import MAX_FORM
-from annotations.language.predicates import gloss
-from annotations.language.symbols import Nonterminal, Wildcard
-from annotations.language.templates import template_checker
+from annotations.language.templates import (
+    Sides,
+    format_form,
+    read_known_sides,
+    template_checker,
+    with_repairs,
+)
+from annotations.language.texts import (
+    MAX_FORM,
+    LanguageError,
+    Offsets,
+    Position,
+    Problem,
+    warning_at,
+)
+from annotations.language.world import gloss
 from annotations.models import World
 from annotations.rows.from_rows import classes_of, predicates_of
 
@@ -45,7 +57,7 @@ def check_label(
 ) -> dict[str, Any]:
     """Check a form in any notation for an utterance, against the predicates of its world.
 
-    Returns JSON as ``annotations.checking.assistance.assist`` does, without slots.
+    Returns JSON as ``annotations.generation.assistance.assist`` does, without slots.
     """
     declared, classes = predicates_of(world), classes_of(world)
     sides, checker = Sides(STAND_IN, text), template_checker(Grammar(()), declared)

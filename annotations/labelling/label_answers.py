@@ -14,7 +14,7 @@ from django.utils import timezone
 
 from annotations.editing.edits import say_who
 from annotations.labelling.form_check import canonical_label
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Label, User, Utterance, UtteranceStatus, Verdict, WorkItem
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.editing import HistoryEntry

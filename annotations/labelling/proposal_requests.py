@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from annotations.jobs import request_job, request_job_once
+from annotations.background.requesting import request_job, request_job_once
 from annotations.models import Job, JobKind, Submission, User, World
 
 # Each says whether a world has a parser that could answer.

@@ -12,9 +12,15 @@ from django.db import DatabaseError
 
 from annotations.background.failures import database_sentence, file_sentence
 from annotations.language.corpus import Criterion
-from annotations.language.decoding import ENCODINGS, decode, why_outside
-from annotations.language.errors import LanguageError, Problem, Refusal
-from annotations.language.text import normalise_line
+from annotations.language.texts import (
+    ENCODINGS,
+    LanguageError,
+    Problem,
+    Refusal,
+    decode,
+    normalise_line,
+    why_outside,
+)
 from annotations.models import Split, World
 from annotations.people.audit_log import record_command
 from annotations.rows.stored_problems import from_json

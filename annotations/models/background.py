@@ -1,6 +1,6 @@
 """What workers carry out: what all such work has in common, and the jobs of a world.
 
-``annotations.background`` alone writes the columns of work, and ``annotations.jobs`` the jobs.
+``annotations.background`` alone writes the columns of work, and ``annotations.background`` the jobs.
 """
 
 from __future__ import annotations

@@ -11,16 +11,7 @@ from django.db import models
 from django.db.models.fields.json import KeyTextTransform
 from django.db.models.functions import Coalesce, Left, Lower
 
-from annotations.language.errors import LanguageError
-from annotations.language.limits import MAX_INDEXED_BYTES, MAX_PREDICATE
-from annotations.language.recipes import (
-    MAX_ROW,
-    ActionPattern,
-    RecipeBook,
-    read_primitive,
-    read_recipe,
-)
-from annotations.language.symbols import (
+from annotations.language.forms import (
     DEFAULT_CLASSES,
     HUES,
     MAX_CLASS_WORDS,
@@ -28,7 +19,15 @@ from annotations.language.symbols import (
     EntityClasses,
     split_head,
 )
-from annotations.language.symbols import EntityClass as ClassValue
+from annotations.language.forms import EntityClass as ClassValue
+from annotations.language.plans import (
+    MAX_ROW,
+    ActionPattern,
+    RecipeBook,
+    read_primitive,
+    read_recipe,
+)
+from annotations.language.texts import MAX_INDEXED_BYTES, MAX_PREDICATE, LanguageError
 from annotations.models.editing import Editable
 from annotations.models.people import User
 from annotations.models.worlds import World
@@ -50,7 +49,7 @@ class EntityClassQuerySet(models.QuerySet["EntityClass"]):
 
 
 class EntityClass(Editable):
-    """A class of the entities of a world, as ``annotations.language.symbols.EntityClass`` explains it.
+    """A class of the entities of a world, as ``annotations.language.forms.EntityClass`` explains it.
 
     The token stands in entities, templates, forms and commands, and does not change.
     """
@@ -101,7 +100,7 @@ class EntityClass(Editable):
 
 
 class BookRow(Editable):
-    """A row of the recipe book of a world, as a text that ``annotations.language.recipes`` reads and writes."""
+    """A row of the recipe book of a world, as a text that ``annotations.language.plans`` reads and writes."""
 
     edited_fields = ("text",)
 

@@ -147,7 +147,7 @@ class CommentQuerySet(models.QuerySet["Comment"]):
 
 
 class Comment(models.Model):
-    """``kind`` and ``subject``, a key, say what it is about (``annotations.commenting``).
+    """``kind`` and ``subject``, a key, say what it is about (``annotations.editing.commenting``).
 
     ``about`` is the text of the subject at that time: logical forms are generated anew under other
     keys and found by it. ``subject`` is None where the row was gone when its world was moved.

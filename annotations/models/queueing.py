@@ -1,6 +1,6 @@
 """What people are asked next: the work queue, and labels in doubt.
 
-``annotations.queueing`` alone writes the queue, and ``annotations.label_audit`` what audits find.
+``annotations.labelling`` alone writes the queue, and ``annotations.labelling`` what audits find.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from django.db import models
 from django.db.models import F, Q
 from django.utils import timezone
 
+from annotations.language.corpus import Reason
 from annotations.language.forms import UNKNOWN, canonical_text
-from annotations.language.label_errors import Reason
 from annotations.models.corpus import (
     MOST_CHARACTERS,
     Label,

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from django.db import models
 
 from annotations.language.corpus import Criterion, Part
-from annotations.language.errors import LanguageError
 from annotations.language.forms import depth, head_predicate, read_form
 from annotations.language.templates import SampleNote
+from annotations.language.texts import LanguageError
 from annotations.models.people import User
 from annotations.models.worlds import World
 

@@ -13,14 +13,14 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
-from annotations.language.recipes import default_book
+from annotations.language.plans import default_book
 from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 from annotations.models.short_texts import ShortTextField
 
 if TYPE_CHECKING:
-    from annotations.language.predicates import Predicate
-    from annotations.language.symbols import EntityClasses
+    from annotations.language.forms import EntityClasses
+    from annotations.language.world import Predicate
 
 
 class Duty(models.TextChoices):

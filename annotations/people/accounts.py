@@ -12,7 +12,7 @@ from django.utils import timezone
 from django.utils.encoding import force_bytes
 from django.utils.http import urlsafe_base64_encode
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Assignment, LogInSession, User
 
 MOST_DEVICE_CHARACTERS = 200

@@ -7,7 +7,7 @@ from http import HTTPStatus
 from django.contrib.auth.models import AnonymousUser
 from django.db import IntegrityError, transaction
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Invitation, User, World
 from annotations.people.members import add_roles
 

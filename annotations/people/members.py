@@ -9,7 +9,7 @@ from http import HTTPStatus
 
 from django.db import transaction
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Assignment, Invitation, Membership, User, World
 from annotations.models.worlds import Role
 

@@ -11,7 +11,7 @@ from django.core import signing
 from django.db import transaction
 from django.utils import timezone
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Invitation, User, World
 from annotations.people.members import role_names, roles_of, set_roles
 

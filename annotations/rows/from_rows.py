@@ -9,11 +9,9 @@ from dataclasses import dataclass
 from django.db.models import QuerySet
 
 from annotations import models
-from annotations.language.errors import Position
+from annotations.language.forms import EntityClasses
 from annotations.language.grammar import Grammar, Production, apply_alias, read_production
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import Predicate, PredicateKind, Signature
-from annotations.language.recipes import (
+from annotations.language.plans import (
     Primitive,
     Recipe,
     RecipeBook,
@@ -21,13 +19,14 @@ from annotations.language.recipes import (
     read_primitive,
     read_recipe,
 )
-from annotations.language.symbols import EntityClasses
 from annotations.language.templates import (
     BoundedCache,
     SemanticTemplate,
     TaskCategory,
     make_template,
 )
+from annotations.language.texts import Position
+from annotations.language.world import Entity, Ontology, Predicate, PredicateKind, Signature
 from annotations.models.description import TemplateStatus
 from annotations.rows.composition import split_entry
 

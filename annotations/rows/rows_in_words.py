@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django.db import models
 
-from annotations.language.english import plural
+from annotations.language.texts import plural
 
 # Where the name of the model says less.
 IN_WORDS = {

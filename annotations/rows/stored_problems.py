@@ -9,8 +9,7 @@ from operator import attrgetter
 from typing import Any
 
 from annotations import models
-from annotations.language.english import say_count
-from annotations.language.errors import Position, Problem, Severity
+from annotations.language.texts import Position, Problem, Severity, say_count
 from annotations.models import Grammar
 from annotations.models.description import ProblemSubject
 from annotations.rows.synchronise import Changes, synchronise

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from annotations.language.forms import Form
-from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, make_plan
-from annotations.language.predicates import Predicate
-from annotations.language.recipes import RecipeBook, TaskPlan, apply_recipes
+from annotations.language.plans import Lookup, RecipeBook, TaskPlan, apply_recipes, make_plan
+from annotations.language.world import Ontology, Predicate
 from annotations.models import World
 from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_of
 

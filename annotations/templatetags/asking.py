@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from django import template
 
+from annotations.labelling.enqueuing import ItemSubject, field_of
+from annotations.labelling.sent_examples import subject_of_example
 from annotations.models import Example, SemanticTemplate
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.queueing.enqueuing import ItemSubject, field_of
-from annotations.queueing.sent_examples import subject_of_example
 from annotations.rows.occurrences import command_of_example
-from annotations.web.queueing.work_item_forms import LONGEST_QUESTION
+from annotations.web.labelling.work_item_forms import LONGEST_QUESTION
 
 register = template.Library()
 

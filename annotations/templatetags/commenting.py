@@ -9,7 +9,7 @@ from django import template
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 
-from annotations.commenting import MENTION, SUBJECTS, comments_on, people_of
+from annotations.editing.commenting import MENTION, SUBJECTS, comments_on, people_of
 from annotations.models import Comment
 from annotations.web.editing.comment_forms import CommentForm
 

@@ -14,8 +14,14 @@ from django.urls import reverse
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString, mark_safe
 
-from annotations import figures
-from annotations.form_presentation import (
+from annotations.language.corpus import CLASS_OF_ATTRIBUTE
+from annotations.language.forms import Change, predicates
+from annotations.language.texts import Position, article
+from annotations.models import Predicate, World
+from annotations.models.editing import LONGEST_ABOUT, NEW
+from annotations.models.splits import criterion_choices
+from annotations.showing import figures
+from annotations.showing.form_presentation import (
     answer_difference,
     answer_pieces,
     form_of,
@@ -27,14 +33,7 @@ from annotations.form_presentation import (
     tree_of,
     wildcard_class,
 )
-from annotations.language.english import article
-from annotations.language.errors import Position
-from annotations.language.forms import Change, predicates
-from annotations.language.names import CLASS_OF_ATTRIBUTE
-from annotations.markdown import rendered
-from annotations.models import Predicate, World
-from annotations.models.editing import LONGEST_ABOUT, NEW
-from annotations.models.splits import criterion_choices
+from annotations.showing.markdown import rendered
 
 register = template.Library()
 for written in (
@@ -298,7 +297,7 @@ MARKS = {Change.ADDED: "ins", Change.REMOVED: "del", Change.CHANGED: "mark"}
 
 @register.simple_tag
 def marked_text(pieces: list[tuple[str, str]]) -> SafeString:
-    """Show a text with what was added and removed marked (``annotations.form_presentation.compare``)."""
+    """Show a text with what was added and removed marked (``annotations.showing.form_presentation.compare``)."""
     marked = format_html_join("", "{}", ((_mark_piece(*piece),) for piece in pieces))
     return format_html('<figure class="lf"><code>{}</code></figure>', marked)
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from django import template
 
-from annotations.language.errors import Problem
-from annotations.language.recipes import Primitive
+from annotations.language.plans import Primitive
+from annotations.language.texts import Problem
 
 register = template.Library()
 

@@ -7,7 +7,7 @@ from typing import Any
 from django import forms
 from django.http import QueryDict
 
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.people.access import PageRequest
 
 

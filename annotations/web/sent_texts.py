@@ -6,9 +6,13 @@ from typing import Any
 
 from django.http import HttpRequest, QueryDict
 
-from annotations.language.errors import Refusal
-from annotations.language.limits import MAX_NESTING
-from annotations.language.text import TextChanges, has_half_character, normalise
+from annotations.language.texts import (
+    MAX_NESTING,
+    Refusal,
+    TextChanges,
+    has_half_character,
+    normalise,
+)
 
 MOST_NAMED = 20  # fields in a header or a message
 LONGEST_FIELD = 200  # characters of the name of a field: each value in a long list has one

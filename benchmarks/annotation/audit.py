@@ -15,7 +15,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from annotations.language.label_errors import Suspect
+from annotations.language.corpus import Suspect
 from benchmarks.fresh_site import DATA, WORLD, Site
 
 GENDERS = {"male", "female"}
@@ -30,7 +30,7 @@ def show(number: int, suspect: Suspect) -> None:
 
 def says_the_other_gender(suspect: Suspect) -> bool:
     """Whether the command behind the pair contradicts the gender in the label."""
-    from annotations.language.label_errors import check_words
+    from annotations.language.corpus import check_words
 
     findings = check_words([suspect.pair])
     sentences = [each.sentence for each in findings if "command" in each.sentence]
@@ -49,7 +49,7 @@ def main() -> None:
         site.run("import_pairs", str(DATA / "walker2019"), "--world", WORLD, "--name", "walker2019")
         site.enter()
         from annotations.models import World
-        from parser_service.label_audit.audit_job import audit_labels
+        from parser_service.labelling.audit_job import audit_labels
 
         began = time.perf_counter()
         audit = audit_labels(World.objects.get(name=WORLD), folds=args.folds)

@@ -64,7 +64,7 @@ def files_2019() -> dict[str, bytes]:
 
 def template_lines(grammar: Any) -> Iterator[str]:
     """Open the largest pattern at its first nonterminal or choice, until there are enough."""
-    from annotations.language.symbols import Choice, Nonterminal, print_sequence
+    from annotations.language.forms import Choice, Nonterminal, print_sequence
 
     patterns: dict[Any, int] = {(Nonterminal("Main"),): grammar.size()}
     while len(patterns) < TEMPLATES_2019:
@@ -84,7 +84,7 @@ def template_lines(grammar: Any) -> Iterator[str]:
 
 
 def make_world(name: str, files: dict[str, bytes]) -> Any:
-    from annotations.importing.generator_import import import_generator
+    from annotations.exchange.generator_import import import_generator
     from annotations.models import World
 
     World.objects.create(name=name)
@@ -177,13 +177,13 @@ def spread(rows: Any, count: int) -> list[Any]:
 
 def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What a production would become and change, asked about with another word each time, and saved."""
-    from annotations.checking.deletion_check import check_deletion
-    from annotations.checking.production_check import (
+    from annotations.editing.edits import change
+    from annotations.generation.deletion_check import check_deletion
+    from annotations.generation.production_check import (
         ProductionEdit,
         check_production,
         consequences_of_production,
     )
-    from annotations.editing.edits import change
     from annotations.models import Production
 
     rows = spread(Production.objects.filter(grammar__world=world), repeat)
@@ -208,8 +208,8 @@ def measure_productions(world: Any, user: Any, repeat: int, bound: float) -> Non
 
 def measure_renames(world: Any, user: Any, repeat: int, bound: float) -> None:
     """What another name changes, and changing it."""
+    from annotations.editing.world_rename import rename, touched_by
     from annotations.models import Entity, Predicate, Production
-    from annotations.renaming.world_rename import rename, touched_by
 
     productions = Production.objects.filter(grammar__world=world).exclude(nonterminal="Main")
     first = {row.nonterminal: row for row in reversed(productions)}

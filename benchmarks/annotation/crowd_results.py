@@ -85,9 +85,9 @@ class Steps:
 
 def measure(campaign: Any, data: bytes, by: Any) -> float:
     """Check and import ``data``; print and return the seconds of processor time of both."""
+    from annotations.background.job_files import KeptUpload
     from annotations.campaigns.crowd_jobs import read_results
     from annotations.campaigns.crowd_results import plan_results, store_results
-    from annotations.jobs.files import KeptUpload
 
     began = time.process_time()
     read, _ = read_results(KeptUpload(io.BytesIO(data), "results.csv"))

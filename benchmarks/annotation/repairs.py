@@ -2,7 +2,7 @@
 
     python -m benchmarks.annotation.repairs FOLDER [--most 12] [--seed 0]
 
-FOLDER holds the files of a generator. Mistakes are those of tests/annotations/language/assistance/mistakes.py.
+FOLDER holds the files of a generator. Mistakes are those of tests/annotations/language/templates/mistakes.py.
 A mistake counts as taken back if the repaired template has the pattern and the canonical form of the
 original. ``first``: by the first repair of a problem; ``any``: by one of those offered.
 """
@@ -15,10 +15,17 @@ from collections import Counter
 from pathlib import Path
 from random import Random
 
-from annotations.language.assistance import Sides, Usage, usage_of, with_repairs
-from annotations.language.errors import Repair
-from annotations.language.templates import SemanticTemplate, TemplateChecker, read_sides
-from tests.annotations.language.assistance.mistakes import mistakes, published_checkers, value_of
+from annotations.language.templates import (
+    SemanticTemplate,
+    Sides,
+    TemplateChecker,
+    Usage,
+    read_sides,
+    usage_of,
+    with_repairs,
+)
+from annotations.language.texts import Repair
+from tests.annotations.language.templates.mistakes import mistakes, published_checkers, value_of
 
 COUNTS = ("made", "noticed", "offered", "first", "any")
 

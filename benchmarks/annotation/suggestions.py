@@ -23,13 +23,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
-from annotations.language.errors import Position
-from annotations.language.forms import canonical_text, equivalent, to_template
-from annotations.language.predicates import Predicate
-from annotations.language.suggestions import SURE_SHARE, FormSuggester, PatternMaker, Suggestion
-from annotations.language.symbols import Symbols, print_sequence
+from annotations.language.forms import (
+    Symbols,
+    canonical_text,
+    equivalent,
+    print_sequence,
+    to_template,
+)
 from annotations.language.templates import (
+    SURE_SHARE,
+    FormSuggester,
+    PatternMaker,
     SemanticTemplate,
+    Suggestion,
     TaskCategory,
     TemplateExpander,
     generate,
@@ -37,6 +43,8 @@ from annotations.language.templates import (
     read_generator_folder,
     template_checker,
 )
+from annotations.language.texts import Position
+from annotations.language.world import Predicate
 from benchmarks.fresh_site import DATA
 from parser_service.analysis.intervals import wilson_interval
 

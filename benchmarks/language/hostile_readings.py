@@ -16,27 +16,49 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
-from annotations.language.assistance import (
+from annotations.language.corpus import (
+    EntityName,
+    distance,
+    read_pairs,
+    rename_in_conditions,
+    rename_in_template,
+    words,
+)
+from annotations.language.forms import (
+    places_in_form,
+    places_in_pattern,
+    read_form,
+    read_spans,
+    read_wildcard,
+)
+from annotations.language.grammar import (
+    Grammar,
+    find_heading,
+    find_imports,
+    read_production,
+    read_productions,
+    split_comments,
+)
+from annotations.language.grounding import Anonymizer
+from annotations.language.templates import (
     Sides,
     correspondences,
     format_form,
     format_pattern,
+    read_sides,
+    read_template,
+    read_templates,
+    template_checker,
     with_repairs,
 )
-from annotations.language.corpus import distance, read_pairs
-from annotations.language.corpus.distances import words
-from annotations.language.errors import LanguageError
-from annotations.language.forms import read_form, read_spans
-from annotations.language.grammar import Grammar, read_production, read_productions
-from annotations.language.grammar.productions import find_heading, find_imports, split_comments
-from annotations.language.grounding import Anonymizer
-from annotations.language.names import EntityName, rename_in_conditions, rename_in_template
-from annotations.language.ontology import Ontology, read_entities, read_ontology
-from annotations.language.predicates import read_signatures
-from annotations.language.predicates.gloss_patterns import read_pattern
-from annotations.language.symbols import places_in_form, places_in_pattern, read_wildcard
-from annotations.language.templates import read_sides, read_template, template_checker
-from annotations.language.templates.templates import read_templates
+from annotations.language.texts import LanguageError
+from annotations.language.world import (
+    Ontology,
+    read_entities,
+    read_ontology,
+    read_pattern,
+    read_signatures,
+)
 from benchmarks.language.hostile_patterns import LIMIT, HostileText, seconds
 
 SIZES = (1_200, 4_900, 19_600)  # characters: the last is above the limits of patterns and forms

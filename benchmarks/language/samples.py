@@ -13,8 +13,8 @@ import argparse
 import resource
 import time
 
+from annotations.language.forms import Nonterminal, print_sequence, walk_symbols
 from annotations.language.grammar import Grammar, read_productions, readable
-from annotations.language.symbols import Nonterminal, print_sequence, walk_symbols
 from annotations.language.templates import (
     Balance,
     Language,

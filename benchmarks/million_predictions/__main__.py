@@ -55,9 +55,9 @@ def propose() -> None:
     """Propose for the run with the most errors, which is the first one."""
     from annotations.background.progress import UNWATCHED
     from annotations.models import World
-    from parser_service.analyses.attractor_findings import attractors_in
-    from parser_service.analyses.stored_findings import findings_of
+    from parser_service.reviews.attractor_findings import attractors_in
     from parser_service.reviews.category_proposals import propose_for_run
+    from parser_service.reviews.stored_findings import findings_of
 
     run = World.objects.get(name=WORLD).runs.order_by("pk")[0]
     attractors = attractors_in(findings_of(run, "test"))

@@ -65,9 +65,9 @@ def fill(examples: int) -> None:
 def analyse(split: Any) -> None:
     """Let the analyses of a whole part be stored, as a worker does."""
     from annotations.background.progress import UNWATCHED
-    from parser_service.analyses.analysis_job import OF_PARTS
-    from parser_service.analyses.stored_findings import keep_finding
-    from parser_service.analyses.target import Target
+    from parser_service.reviews.analysis_job import OF_PARTS
+    from parser_service.reviews.stored_findings import keep_finding
+    from parser_service.reviews.target import Target
 
     for run in split.runs.all():
         target = Target(run, "test")

@@ -29,9 +29,9 @@ def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
     A held-out form that no step arrives at has support 0.
     """
     from annotations.models import World
-    from parser_service.benchmarking.corpus import new_split
-    from parser_service.parsers.new_forms.generation import reach
-    from parser_service.runs.training.knowledge import knowledge_of
+    from parser_service.parsers.generation import reach
+    from parser_service.results.corpus import new_split
+    from parser_service.runs.knowledge import knowledge_of
 
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
     for seed in range(splits):
@@ -62,7 +62,7 @@ def main() -> None:
 
 def report(protocol: str, forms: pd.DataFrame, splits: int) -> None:
     from parser_service.neural.ranker.ranked_forms import MOST_SUPPORT
-    from parser_service.parsers.new_forms.pool import SURE
+    from parser_service.parsers.pool import SURE
 
     kept = forms[forms["support"] >= SURE]
     covered = 100 * kept["pairs"].sum() / forms["pairs"].sum()

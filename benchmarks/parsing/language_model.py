@@ -39,7 +39,7 @@ def main() -> None:
 def lengths(criterion: str) -> Iterator[str]:
     from annotations.models import World
     from parser_service.parsers.llm.config import FREE, LISTED
-    from parser_service.runs.training.knowledge import knowledge_of
+    from parser_service.runs.knowledge import knowledge_of
 
     for protocol in ("strict", "domain"):
         knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
@@ -69,9 +69,9 @@ def ask_nobody(
     criterion: str, knowledge: Knowledge, **config: Any
 ) -> tuple[list[Pair], list[Question]]:
     """Return the validation paraphrases, and the question about each."""
-    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.llm.config import LanguageModelConfig
     from parser_service.parsers.llm.language_model import LanguageModel
+    from parser_service.results.corpus import read_corpus
 
     corpus = read_corpus(DATA / "walker2019", criterion)
     model = LanguageModel(LanguageModelConfig(model="any", **config), 0, knowledge)

@@ -38,9 +38,9 @@ WARM_UP = 10
 def measure(name: str, protocol: str, saved: Path | None) -> None:
     """Train or load a parser and print its line."""
     from annotations.models import World
-    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.training.knowledge import knowledge_of
+    from parser_service.results.corpus import read_corpus
+    from parser_service.runs.knowledge import knowledge_of
 
     corpus, sources = read_corpus(DATA / "walker2019", "command"), ("generated", "paraphrased")
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)
@@ -72,7 +72,7 @@ def batched(utterances: Sequence[str]) -> Iterator[Sequence[str]]:
 
 def seconds_of(parser: Any, calls: Sequence[Sequence[str]]) -> list[float]:
     """Return the seconds of each call of ``predict``, after some that are not counted."""
-    from parser_service.runs.training.evaluating import BEAM_WIDTH
+    from parser_service.runs.evaluating import BEAM_WIDTH
 
     for utterances in calls[:WARM_UP]:
         parser.predict(utterances, BEAM_WIDTH)

@@ -21,7 +21,7 @@ from time import process_time
 import django
 from spellchecker import SpellChecker
 
-from annotations.language.english import sounds_like
+from annotations.language.texts import sounds_like
 
 FILLERS = ("uhm", "uh,", "er", "you know", "well", "like", ", um,")
 OPENINGS = (
@@ -182,7 +182,7 @@ def main() -> None:
     from annotations.models import World
     from parser_service.parsers.interface import Candidate
     from parser_service.parsers.oracle import GrammarOracle
-    from parser_service.runs.training.knowledge import knowledge_of
+    from parser_service.runs.knowledge import knowledge_of
 
     world = World.objects.get(name=given.world)
     oracle = GrammarOracle(knowledge=knowledge_of(world, "grammar"))

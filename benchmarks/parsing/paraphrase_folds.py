@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterator, Sequence
 
 import django
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import (
     SEQUENCE,
     Application,
@@ -28,6 +27,7 @@ from annotations.language.forms import (
     read_form,
     walk,
 )
+from annotations.language.texts import Refusal
 
 
 def heads(form: Form) -> list[str]:
@@ -88,8 +88,8 @@ def main() -> None:
     from parser_service.analysis.intervals import wilson_interval
     from parser_service.management.options import read_hyperparameters
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.runs.training.knowledge import knowledge_of, plan_agreement_of
-    from parser_service.runs.training.split_pairs import as_pairs
+    from parser_service.runs.knowledge import knowledge_of, plan_agreement_of
+    from parser_service.runs.split_pairs import as_pairs
 
     world = World.objects.get(name=given.world)
     pairs = as_pairs(Split.objects.get(world=world, name=given.split).examples.order_by("pk"))

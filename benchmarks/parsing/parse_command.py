@@ -19,7 +19,7 @@ from benchmarks.fresh_site import Site
 
 MOST_SECONDS = 6.0
 STARTER = (
-    "from annotations.worlds.starter_world import load_starter_world; load_starter_world(print)"
+    "from annotations.exchange.starter_world import load_starter_world; load_starter_world(print)"
 )
 WORLD, SPLIT = "household", "by-command"
 SHORT = {"ranker": ["steps=20"], "seq2seq": ["epochs=1"], "seq2seq-minilm": ["epochs=1"]}

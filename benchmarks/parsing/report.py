@@ -171,7 +171,7 @@ def insert(cursor: Any, table: str, same: dict[str, Any], rows: Iterator[dict[st
 def write(target: Path) -> None:
     """Write the report of the only run to ``target``: what the measured process does."""
     from parser_service.models import TrainingRun
-    from parser_service.reports.run_report import part_of, run_report
+    from parser_service.reviews.run_report import part_of, run_report
 
     run = TrainingRun.objects.select_related("split", "world", "created_by").get(
         split__name="large"

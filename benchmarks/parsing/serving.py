@@ -69,7 +69,7 @@ def make_site(folder: Path, parser: str) -> Site:
 def promote_run() -> Any:
     """Promote the run, where a rule has not, and return it."""
     from annotations.models import World
-    from parser_service.promotions.promoting import promote, promoted_run
+    from parser_service.runs.promoting import promote, promoted_run
 
     world = World.objects.get(name=WORLD)
     if promoted_run(world) is None:
@@ -118,7 +118,7 @@ def fastest(rounds: Sequence[np.ndarray]) -> np.ndarray:
 
 def measure(client: Any, parser: Any, utterances: Sequence[str], rounds: int) -> None:
     """Print a line for single parses and one for batches."""
-    from parser_service.runs.training.evaluating import BEAM_WIDTH
+    from parser_service.runs.evaluating import BEAM_WIDTH
     from parser_service.serving.answerer import LINES_TOGETHER
 
     def bare(texts: Sequence[str]) -> None:

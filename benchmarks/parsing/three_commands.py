@@ -20,7 +20,7 @@ from random import Random
 
 import django
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 WAYS = (
     "{0}. {1}. {2}.",

@@ -12,7 +12,7 @@ from typing import Any
 from django.db import connections
 from django.db.migrations.loader import MigrationLoader
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from gpsr_site.backup.backup_tables import APPS
 
 NAME = "manifest.json"

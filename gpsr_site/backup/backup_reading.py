@@ -15,7 +15,7 @@ from django.conf import settings
 from django.core.management.color import no_style
 from django.db import DataError, IntegrityError, connection, transaction
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import LogInSession, User
 from annotations.rows.synchronise import batches
 from gpsr_site.backup.backup_manifest import (

@@ -16,8 +16,7 @@ from django.db.backends.base.base import BaseDatabaseWrapper
 from django.db.backends.base.operations import BaseDatabaseOperations
 from django.db.models import JSONField
 
-from annotations.language.errors import Refusal
-from annotations.language.text import has_half_character
+from annotations.language.texts import Refusal, has_half_character
 from annotations.models import LogInSession
 from annotations.rows.column_values import as_json, from_json
 

@@ -12,7 +12,7 @@ from django.conf import settings
 from django.db import connection
 from django.utils import timezone
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.rows.synchronise import batches
 from gpsr_site.backup.backup_manifest import NAME, BackupManifest, BackupPart, newest_migrations
 from gpsr_site.backup.backup_tables import BackupTable, snapshot, tables

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.language.english import plural, say_count
+from annotations.language.texts import plural, say_count
 from gpsr_site.overview.counts import Counts
 
 

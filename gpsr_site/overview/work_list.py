@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 from django.urls import reverse
 
-from annotations.language.english import say_count
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
+from annotations.language.texts import say_count
 from annotations.models import Duty, Job, World
 from annotations.models.worlds import Role
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from gpsr_site.overview.best_runs import BestRuns
 from gpsr_site.overview.counts import Counts
 from gpsr_site.overview.workers import Workers

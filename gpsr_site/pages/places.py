@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from annotations.language.english import say_count
+from annotations.language.texts import say_count
 from annotations.models import Duty
 from annotations.rows.row_kinds import KINDS
 from gpsr_site.overview.counts import Counts

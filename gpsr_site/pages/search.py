@@ -12,8 +12,6 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render
 from django.urls import reverse
 
-from annotations.form_presentation import shown
-from annotations.lists.filtering import PageFilters
 from annotations.models import (
     Command,
     Duty,
@@ -28,19 +26,21 @@ from annotations.models import (
     World,
 )
 from annotations.people.access import world_view
+from annotations.showing.filtering import PageFilters
+from annotations.showing.form_presentation import shown
 from annotations.web.corpus.corpus_filters import (
     CommandFilters,
     LogicalFormFilters,
     ParaphraseFilters,
     UtteranceFilters,
 )
+from annotations.web.corpus.split_filters import SplitFilters
 from annotations.web.description.description_filters import (
     EntityFilters,
     PredicateFilters,
     ProductionFilters,
     TemplateFilters,
 )
-from annotations.web.splits.split_filters import SplitFilters
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import title_of
 from parser_service.web.runs.run_filters import RunFilters

@@ -9,7 +9,7 @@ from django.contrib import messages
 from django.db import DataError
 from django.http import HttpRequest, HttpResponse
 
-from annotations.language.text import TextChanges
+from annotations.language.texts import TextChanges
 from annotations.web.sent_texts import sent_texts_of
 from gpsr_site.web.refusals import refuse
 

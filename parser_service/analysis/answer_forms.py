@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import Form, equivalent, read_form
+from annotations.language.texts import LanguageError
 
 NO_FORM = "not a form"  # stands for what cannot be read where forms are counted
 

@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from annotations.language.english import say_count
+from annotations.language.texts import say_count
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.analysis.clustered import Parts, accuracies_in_samples, compare, p_values
 

@@ -18,7 +18,7 @@ from annotations.language.forms import (
     Difference,
     diff_unordered,
 )
-from annotations.language.predicates import ArgumentKind, argument_kind
+from annotations.language.world import ArgumentKind, argument_kind
 from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Ints
 from parser_service.analysis.encoded_labels import EncodedLabels, distinct_pairs, encode

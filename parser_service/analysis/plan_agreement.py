@@ -9,10 +9,17 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from annotations.language.forms import Application, Constant, Form, Lambda
-from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, Named, Trouble, Value, make_plan
-from annotations.language.predicates import Predicate
-from annotations.language.recipes import RecipeBook, apply_recipes, plan_key
+from annotations.language.plans import (
+    Lookup,
+    Named,
+    RecipeBook,
+    Trouble,
+    Value,
+    apply_recipes,
+    make_plan,
+    plan_key,
+)
+from annotations.language.world import Ontology, Predicate
 
 MOST_KEPT = 50_000  # plans; the forms of a run come again and again
 # The plan of a form that says nothing to do is the same as no other.

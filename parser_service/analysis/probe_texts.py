@@ -12,7 +12,7 @@ from enum import StrEnum
 from itertools import islice
 from random import Random
 
-from annotations.language.english import unrelated_sentences
+from annotations.language.texts import unrelated_sentences
 
 FEWEST_WORDS = 4  # of an utterance that is shuffled or truncated
 EMPTY_TEXTS = ("", " ", ".", "?", "…")

@@ -9,8 +9,8 @@ from functools import lru_cache
 from django.db.models import Count, Max, Sum
 
 from annotations.labelling.entity_spans import anonymizer_of
-from annotations.language.errors import LanguageError
 from annotations.language.forms import CLASS_TOKEN
+from annotations.language.texts import LanguageError
 from annotations.models import World
 from annotations.rows.from_rows import task_categories
 from annotations.rows.synchronise import BATCH

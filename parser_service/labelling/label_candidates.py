@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import chain, zip_longest
 
 from annotations.labelling.form_check import canonical_label
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.models import Utterance
 from parser_service.labelling.known_forms import derived_forms, nearest_forms
 from parser_service.parsers.interface import Candidate

@@ -9,9 +9,9 @@ from typing import Any
 from django.db.models import Exists, OuterRef
 
 from annotations.background.progress import Progress
-from annotations.language.errors import Refusal
+from annotations.labelling.enqueuing import WantedItem, enqueue
+from annotations.language.texts import Refusal
 from annotations.models import CommandProposal, Job, Proposal, Utterance, WorkKind, World
-from annotations.queueing.enqueuing import WantedItem, enqueue
 from annotations.rows.synchronise import batches
 from parser_service.labelling.known_forms import derived_forms, nearest_forms
 from parser_service.labelling.label_candidates import PERSON, is_label

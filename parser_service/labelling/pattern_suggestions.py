@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.labelling.proposal_requests import last_request, request_answer
-from annotations.language.errors import Refusal
-from annotations.models import TaskCategory, User, World
-from annotations.suggesting import (
+from annotations.generation.suggesting import (
     ParserAnswer,
     SuggestedForm,
     add_answers,
     command_for,
     suggest_forms,
 )
+from annotations.labelling.proposal_requests import last_request, request_answer
+from annotations.language.texts import Refusal
+from annotations.models import TaskCategory, User, World
 from parser_service.labelling.known_forms import nearest_forms
 from parser_service.labelling.label_candidates import NEIGHBOUR
 from parser_service.parsers.registry import title_of

@@ -7,9 +7,8 @@ from operator import itemgetter
 from typing import Any
 
 from annotations.background.progress import Progress
-from annotations.language.corpus import Part
-from annotations.language.paraphrases import FlagCode
-from annotations.language.text import normalise
+from annotations.language.corpus import FlagCode, Part
+from annotations.language.texts import normalise
 from annotations.models import Submission, World
 from annotations.models.campaigns import SubmissionStatus
 from annotations.models.splits import Source

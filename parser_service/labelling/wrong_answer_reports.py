@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from django.db import transaction
 
-from annotations.label_audit import audit_findings
+from annotations.labelling import audit_findings
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import WantedItem, enqueue
 from annotations.labelling.form_check import canonical_label
-from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, canonical_text
-from annotations.language.text import normalise_line
+from annotations.language.texts import Refusal, normalise_line
 from annotations.models import Origin, Proposal, User, WorkKind, World
 from annotations.models.corpus import UtteranceStatus
-from annotations.queueing.enqueuing import WantedItem, enqueue
 from parser_service.labelling.label_candidates import PERSON
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import title_of, untrained

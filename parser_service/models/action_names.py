@@ -1,4 +1,4 @@
-"""What the robot of a world calls its actions. ``parser_service.robots`` alone writes these rows."""
+"""What the robot of a world calls its actions. ``parser_service.serving`` alone writes these rows."""
 
 from __future__ import annotations
 

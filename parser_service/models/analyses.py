@@ -1,4 +1,4 @@
-"""What a worker finds out about the answers of a run. ``parser_service.analyses`` alone writes these rows."""
+"""What a worker finds out about the answers of a run. ``parser_service.reviews`` alone writes these rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers and examples as compressed columns, so that a page can count a million of them. ``parser_service.slices``
+"""Answers and examples as compressed columns, so that a page can count a million of them. ``parser_service.results``
 alone writes these rows; they can be made again from the predictions and examples that they copy."""
 
 from __future__ import annotations

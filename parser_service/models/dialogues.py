@@ -1,6 +1,6 @@
 """Conversations about commands, and the entities that came up in them.
 
-``parser_service.dialogues`` alone writes these rows.
+``parser_service.serving`` alone writes these rows.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from parser_service.models.runs import TrainingRun
 class Dialogue(models.Model):
     """A command and what was said until nothing of it was open.
 
-    ``state`` is what ``annotations.language.dialogue.State`` writes, ``phase`` that of the state;
+    ``state`` is what ``annotations.language.plans.State`` writes, ``phase`` that of the state;
     ``transcript`` holds ``{"who": "person" or "robot", "text": …}`` in order. ``utterance`` is the one that the form is
     of: the last one, where the first was said another way. ``version`` grows with each answer.
     """

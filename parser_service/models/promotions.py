@@ -1,4 +1,4 @@
-"""Which run is the learned part of what answers. ``parser_service.promotions`` alone writes these rows."""
+"""Which run is the learned part of what answers. ``parser_service.runs`` alone writes these rows."""
 
 from __future__ import annotations
 

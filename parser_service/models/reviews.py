@@ -30,7 +30,7 @@ class Slice(models.Model):
 
 
 class ErrorCategory(models.Model):
-    """A kind of error. Those with a ``code`` of ``parser_service.analysis.categories`` are proposed by
+    """A kind of error. Those with a ``code`` of ``parser_service.analysis`` are proposed by
     the machine; every one of them can be proposed by its ``slice``, to all errors in it."""
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="error_categories")

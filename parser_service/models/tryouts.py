@@ -1,4 +1,4 @@
-"""Texts that people try on runs. ``parser_service.analyses`` alone writes these rows."""
+"""Texts that people try on runs. ``parser_service.reviews`` alone writes these rows."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.pretrained_files import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
 from parser_service.parsers.storage import file_hash
 

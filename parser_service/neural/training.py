@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.interface import Observer
 
 TRAINING = "training.json"

@@ -9,7 +9,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor, nn
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 WEIGHTS = "model.safetensors"
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 from itertools import combinations
 from typing import NamedTuple
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 GENERATED, PARAPHRASED, MODEL, SAID = "generated", "paraphrased", "model", "said"
 

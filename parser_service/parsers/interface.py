@@ -13,9 +13,8 @@ from parser_service.parsers.conditions import Protocol
 
 if TYPE_CHECKING:
     from annotations.language.grounding import HeardChange
-    from annotations.language.ontology import Ontology
-    from annotations.language.predicates import Predicate
     from annotations.language.templates import TaskCategory
+    from annotations.language.world import Ontology, Predicate
 
 TRAINING = "training"  # the origin of a form that a training pair has
 UNKNOWN = "UNKNOWN"  # the answer where no form fits

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 from parser_service.parsers.interface import (

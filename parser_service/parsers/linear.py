@@ -17,8 +17,8 @@ from scipy.special import expit
 from sklearn.feature_extraction.text import TfidfVectorizer
 from sklearn.linear_model import LogisticRegression
 
-from annotations.language.errors import Refusal
 from annotations.language.grounding import Anonymizer
+from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import GENERATED, Protocol
 from parser_service.parsers.hyperparameters.linear import LinearConfig
 from parser_service.parsers.interface import (

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
-from annotations.language.errors import Refusal
 from annotations.language.grammar import (
     CHECK_STEPS,
     Budget,
@@ -17,8 +16,7 @@ from annotations.language.grammar import (
     read_production,
 )
 from annotations.language.grounding import HeardLattice, HearingReader
-from annotations.language.ontology import Ontology, read_ontology, write_ontology
-from annotations.language.requests import Islands
+from annotations.language.plans import Islands
 from annotations.language.templates import (
     ChartDerivation,
     TaskCategory,
@@ -26,7 +24,8 @@ from annotations.language.templates import (
     print_template,
     read_template,
 )
-from annotations.language.text import normalise_line
+from annotations.language.texts import Refusal, normalise_line
+from annotations.language.world import Ontology, read_ontology, write_ontology
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import validate
 from parser_service.parsers.interface import (

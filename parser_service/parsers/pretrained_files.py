@@ -15,8 +15,8 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from annotations.language.errors import Refusal
-from parser_service.parsers.llm.server_address import ADDRESS, problem_of, server
+from annotations.language.texts import Refusal
+from parser_service.parsers.server_address import ADDRESS, problem_of, server
 
 CONFIG = "config.json"
 WEIGHTS = "model.safetensors"

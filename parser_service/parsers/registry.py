@@ -9,7 +9,7 @@ from enum import StrEnum
 from importlib import import_module
 from typing import Any
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import ConfigField, describe, read_config
 from parser_service.parsers.interface import Parser

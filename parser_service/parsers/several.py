@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from annotations.language.requests import Islands, Judge, Piece, cut, cut_at_joints, sentences
+from annotations.language.plans import Islands, Judge, Piece, cut, cut_at_joints, sentences
 from parser_service.parsers.oracle import GrammarOracle
 
 MOST_REPAIRS = 10  # spans that looked like commands and were none

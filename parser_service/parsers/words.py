@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from annotations.language.text import normalise
+from annotations.language.texts import normalise
 
 _WORD = re.compile(r"<\w+>|\w+(?:['’]\w+)*")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, read_form
+from annotations.language.texts import LanguageError
 
 
 def read_or_none(text: str) -> Form | None:

@@ -15,8 +15,8 @@ from django.utils import timezone
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.language.corpus import Part
 from annotations.language.forms import CLASS_TOKEN
-from annotations.language.ontology import Ontology
-from annotations.language.text import normalise
+from annotations.language.texts import normalise
+from annotations.language.world import Ontology
 from annotations.models import Example, Split, World
 from annotations.rows.from_rows import ontology_of
 from parser_service.analysis.clustered import Clustered, Interval, interval_of
@@ -32,8 +32,8 @@ from parser_service.models import AnswererEvaluation, TrainingRun
 from parser_service.models.answering import answering_of
 from parser_service.parsers.conditions import PEOPLES, SOURCES, TEST_SOURCES
 from parser_service.parsers.interface import UNKNOWN
-from parser_service.runs.training.knowledge import plan_agreement_of
-from parser_service.runs.training.split_pairs import cluster_of
+from parser_service.runs.knowledge import plan_agreement_of
+from parser_service.runs.split_pairs import cluster_of
 from parser_service.serving.calibrating import Calibrated, point_of
 
 AT_ONCE = 64

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from annotations.language.english import say_count
+from annotations.language.texts import say_count
 from annotations.models import Split, World
 from parser_service.analysis.probabilities import Reliability, reliability
 from parser_service.models import AnswererEvaluation

@@ -19,7 +19,7 @@ from parser_service.results.accuracy_cells import Cell
 from parser_service.results.accuracy_tables import TableMaker, by_part, rank_of
 from parser_service.results.measures import Measure
 from parser_service.results.table_parts import Changes, TableColumn, marked
-from parser_service.runs.requests.learning_curve import MOST_SEEDS, SHARES, points_of
+from parser_service.runs.learning_curve import MOST_SEEDS, SHARES, points_of
 
 _SEEDS = (1, 3, MOST_SEEDS)  # what is offered
 

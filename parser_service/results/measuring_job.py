@@ -11,15 +11,15 @@ from typing import Any
 from django.conf import settings
 
 from annotations.background.progress import Progress
-from annotations.jobs import request_job_once
-from annotations.language.errors import Refusal
+from annotations.background.requesting import request_job_once
+from annotations.language.texts import Refusal
 from annotations.models import Job, JobKind, Split, User, World
 from annotations.models.background import Queue
 from parser_service.analysis.sureness import AnsweredForm
 from parser_service.models import AnsweringOrder, TrainingRun
 from parser_service.models.answering import answering_of
-from parser_service.promotions.promoting import promoted_run
 from parser_service.results.answerer_figures import Answerer, evaluate_answerer
+from parser_service.runs.promoting import promoted_run
 from parser_service.serving import answerer as serving
 from parser_service.serving.default_runs import standings
 from parser_service.serving.metrics import Metrics

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from django.db.models import Count, OuterRef, QuerySet, Subquery
 
-from annotations.language.agreement import Agreement, measure
+from annotations.language.corpus import Agreement, measure
 from annotations.models import World
 from parser_service.models import ErrorCategory, Review, TrainingRun
 

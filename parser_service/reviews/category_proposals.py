@@ -8,18 +8,14 @@ from annotations.background.progress import Progress
 from annotations.language.forms import read_form
 from annotations.rows.synchronise import batches
 from parser_service.analysis.answer_forms import read_or_none
-from parser_service.analysis.categories import (
-    OF_DIFFERENCES,
-    ErrorEvidence,
-    Proposals,
-    RunEvidence,
-    propose_category,
-)
+from parser_service.analysis.category_proposals import Proposals, propose_category
+from parser_service.analysis.error_evidence import ErrorEvidence, RunEvidence
+from parser_service.analysis.structure import OF_DIFFERENCES
 from parser_service.models import Review, TrainingRun
+from parser_service.results.selecting import select
 from parser_service.reviews.error_evidence import ErrorEvidences, evidence_of_run
 from parser_service.reviews.first_answers import FirstAnswer, read_answers, read_earlier_errors
 from parser_service.reviews.world_categories import ensure_categories
-from parser_service.slices.selecting import select
 
 BATCH = 500
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from annotations.label_audit import audit_findings
-from annotations.language.errors import Refusal
+from annotations.labelling import audit_findings
+from annotations.labelling.enqueuing import ItemSubject
+from annotations.labelling.sent_examples import send_examples, subject_of_example
 from annotations.language.forms import canonical_text
+from annotations.language.texts import Refusal
 from annotations.models import Example, Paraphrase, SemanticTemplate, User, Utterance
 from annotations.models.corpus import ParaphraseStatus, UtteranceStatus
-from annotations.queueing.enqueuing import ItemSubject
-from annotations.queueing.sent_examples import send_examples, subject_of_example
 from annotations.rows.occurrences import command_of_example
 from parser_service.analysis.answer_forms import read_or_none
 

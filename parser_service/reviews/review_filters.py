@@ -10,8 +10,8 @@ from django import forms
 from django.db.models import Exists, OuterRef, QuerySet
 
 from parser_service.models import Prediction, Review, TrainingRun
+from parser_service.results.prediction_filters import PredictionFilters
 from parser_service.reviews.earlier import new_errors, tagged_before
-from parser_service.slices.prediction_filters import PredictionFilters
 
 Rows = QuerySet[Prediction]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Example, User
 from parser_service.models import ErrorCategory, Prediction, Review, TrainingRun
 

@@ -8,9 +8,9 @@ from django.db import transaction
 from django.db.models import Max
 from django.utils.text import slugify
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import World
-from parser_service.analysis.categories import DESCRIPTIONS, NAMES
+from parser_service.analysis.error_categories import DESCRIPTIONS, NAMES
 from parser_service.models import ErrorCategory, Review, Slice
 
 LONGEST_CODE = 40

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.jobs import request_job_once
+from annotations.background.requesting import request_job_once
 from annotations.models import Job, JobKind, User
 from annotations.models.background import JobQuerySet
 from parser_service.models import TrainingRun

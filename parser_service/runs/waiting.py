@@ -9,7 +9,7 @@ from django.db.models import Q
 from django.utils import timezone
 
 from annotations.background import kinds
-from annotations.figures import rough_duration
+from annotations.showing.figures import rough_duration
 from parser_service.models import TrainingRun, Worker
 
 COUNTED = 20  # the newest runs of a parser that its usual time is taken from

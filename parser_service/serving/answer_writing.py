@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from annotations.language.english import MOST_STAND_INS, stand_in
 from annotations.language.forms import Form, Unknown
 from annotations.language.grounding import (
     Anonymized,
@@ -17,7 +16,8 @@ from annotations.language.grounding import (
     resolve_slots,
     with_values,
 )
-from annotations.language.predicates import ask_for
+from annotations.language.texts import MOST_STAND_INS, stand_in
+from annotations.language.world import ask_for
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.outlines import (
     Outline,

@@ -16,12 +16,10 @@ from http import HTTPStatus
 from math import log, prod
 from typing import TYPE_CHECKING, Any, cast
 
-from annotations.language.dialogue import shall_i
-from annotations.language.errors import Refusal
 from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
 from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader, Slot
-from annotations.language.recipes import MOST_COMMANDS, join
-from annotations.language.requests import (
+from annotations.language.plans import (
+    MOST_COMMANDS,
     Fit,
     Objection,
     StoppingWords,
@@ -29,9 +27,12 @@ from annotations.language.requests import (
     best_fitting,
     exchange,
     fit,
+    join,
     objections,
+    shall_i,
     with_entities,
 )
+from annotations.language.texts import Refusal
 from parser_service.analysis.sureness import (
     AnsweredForm,
     AnsweringPart,

@@ -8,15 +8,15 @@ from http import HTTPStatus
 from django.db import IntegrityError, transaction
 from django.utils import timezone
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import User, World
 from annotations.rows.from_rows import ready_templates
 from parser_service.models import Answering, AnsweringOrder, TrainingRun
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.llm.server_address import problem_of, server
 from parser_service.parsers.registry import ORACLE, title_of
-from parser_service.promotions.promoting import last_part, last_runs, learned_part
+from parser_service.parsers.server_address import problem_of, server
+from parser_service.runs.promoting import last_part, last_runs, learned_part
 from parser_service.serving.calibrating import Calibrated, calibrated
 
 

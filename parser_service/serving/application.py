@@ -16,7 +16,7 @@ from typing import Any
 
 from prometheus_client import CONTENT_TYPE_LATEST
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.registry import untrained
 from parser_service.serving.answerer import USUAL_BEAM, Answerer, NotServed
 from parser_service.serving.lines import answer_lines, read_object

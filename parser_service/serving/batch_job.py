@@ -7,8 +7,8 @@ from typing import Any
 
 from django.conf import settings
 
+from annotations.background.job_files import kept_uploads, result_of
 from annotations.background.progress import Progress
-from annotations.jobs.files import kept_uploads, result_of
 from annotations.models import Job
 from parser_service.serving.lines import answer_lines
 from parser_service.serving.metrics import Metrics

@@ -7,8 +7,8 @@ from http import HTTPStatus
 from django.core.files.base import ContentFile
 from django.db import transaction
 
-from annotations.jobs import request_job
-from annotations.language.errors import Refusal
+from annotations.background.requesting import request_job
+from annotations.language.texts import Refusal
 from annotations.models import Job, JobKind, User, World
 
 MOST_AT_ONCE = 3  # batches of one person that wait or run

@@ -13,13 +13,13 @@ from http import HTTPStatus
 from django.db.models import Count, QuerySet
 
 from annotations.language.corpus import KNOWN, Criterion, Part, harmonic_mean
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Split, World
 from annotations.models.background import Status
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.registry import Needs, needing
-from parser_service.promotions.promoting import promoted_run
+from parser_service.runs.promoting import promoted_run
 
 # What a person says is what counts; of runs that were never tested on it, the next best.
 EVIDENCE = ("para", "said", "mixed", "gen", "model")

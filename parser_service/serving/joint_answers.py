@@ -6,19 +6,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN, Form, read_form
 from annotations.language.grounding import Slot
-from annotations.language.plans import TaskValue
-from annotations.language.recipes import (
+from annotations.language.plans import (
     MOST_COMMANDS,
     Distances,
     JointPlan,
     TaskPlan,
+    TaskValue,
     TooManyCommands,
     join,
     spoken,
 )
+from annotations.language.texts import Refusal
 from annotations.models import World
 from parser_service.serving.parse_answers import task_plan_of
 from parser_service.serving.parser_client import client

@@ -6,8 +6,7 @@ import io
 from collections.abc import Iterator
 from pathlib import Path
 
-from annotations.language.decoding import decode
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal, decode
 from parser_service.serving.answerer import Answerer
 from parser_service.serving.lines import LineAnswer, answer_some, read_object, utterance_in
 from parser_service.serving.preparing import require_utterance

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.serving.answerer import Answer, Answerer, NotServed
 from parser_service.serving.parse_answers import as_json
 from parser_service.serving.preparing import numbered_lines, require_utterance

@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import lru_cache
 from http import HTTPStatus
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import World
 from annotations.models.background import Status
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.registry import entry, load_class, untrained
 from parser_service.runs.checkpoints import model_folder
-from parser_service.runs.training.knowledge import knowledge_of
+from parser_service.runs.knowledge import knowledge_of
 
 LOADED_PARSERS = 2
 

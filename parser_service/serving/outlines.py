@@ -12,18 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from annotations.language.english import (
-    MOST_STAND_INS,
-    STAND_IN,
-    plural,
-    read_stand_in,
-    stand_in,
-)
 from annotations.language.forms import Form, Reference, walk
 from annotations.language.grounding import Deanonymized, FormSlots, SlotPath, filled
-from annotations.language.plans import Lookup, Named, Value, Words
-from annotations.language.predicates import ask_for, can_stand_in, is_loose, texts_of_patterns
-from annotations.language.recipes import spoken
+from annotations.language.plans import Lookup, Named, Value, Words, spoken
+from annotations.language.texts import MOST_STAND_INS, STAND_IN, plural, read_stand_in, stand_in
+from annotations.language.world import ask_for, can_stand_in, is_loose, texts_of_patterns
 from parser_service.parsers.interface import Candidate
 from parser_service.parsers.remembering import remembered
 from parser_service.serving.parse_answers import answer_with, as_json, form_of, task_plan_of

@@ -10,7 +10,6 @@ from functools import lru_cache
 from math import exp, inf
 from typing import Any, Generic, TypeVar
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import (
     CLASS_TOKEN,
     Form,
@@ -26,10 +25,9 @@ from annotations.language.grounding import (
     deanonymize,
     open_slots_as_json,
 )
-from annotations.language.ontology import Ontology
-from annotations.language.plans import Lookup, TaskValue, make_plan
-from annotations.language.predicates import gloss
-from annotations.language.recipes import TaskPlan, apply_recipes, spoken
+from annotations.language.plans import Lookup, TaskPlan, TaskValue, apply_recipes, make_plan, spoken
+from annotations.language.texts import LanguageError
+from annotations.language.world import Ontology, gloss
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.preparing import WorldLanguage
 

@@ -16,7 +16,7 @@ from urllib.parse import urlencode, urlsplit
 
 from django.conf import settings
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 CONNECT_SECONDS = 0.8
 # A server that has ended closes its connections. One that answers nothing is looked at again and again: it may be

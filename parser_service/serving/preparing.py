@@ -10,28 +10,26 @@ from itertools import islice
 from random import Random
 from typing import Self
 
-from annotations.language.errors import LanguageError, Refusal
-from annotations.language.forms import Form
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses, Form, Symbols, Text, Wildcard
 from annotations.language.grammar import anonymized
 from annotations.language.grounding import Anonymizer, Evidence
-from annotations.language.ontology import Ontology
-from annotations.language.plans import ActionName, Lookup
-from annotations.language.predicates import Predicate
-from annotations.language.recipes import RecipeBook, UsualPlaces, default_book, usual_places
-from annotations.language.requests import NearCommands, WordUse
-from annotations.language.symbols import (
-    DEFAULT_CLASSES,
-    EntityClasses,
-    Symbols,
-    Text,
-    Wildcard,
+from annotations.language.plans import (
+    ActionName,
+    Lookup,
+    NearCommands,
+    RecipeBook,
+    UsualPlaces,
+    WordUse,
+    default_book,
+    usual_places,
 )
 from annotations.language.templates import spread_derivations
-from annotations.language.text import has_half_character, normalise
+from annotations.language.texts import LanguageError, Refusal, has_half_character, normalise
+from annotations.language.world import Ontology, Predicate
 from annotations.models import World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_of, task_categories
-from parser_service.robots.action_naming import names_of
+from parser_service.serving.action_naming import names_of
 
 MOST_CANDIDATES = 20
 MOST_ALTERNATIVES = 20  # of a recogniser

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from http import HTTPStatus
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.interface import Candidate, Check
 
 Predict = Callable[[Sequence[str], int, Check], list[list[Candidate]]]

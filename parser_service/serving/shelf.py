@@ -13,9 +13,9 @@ from typing import Any
 
 from django.db.models import Count, Max, Sum
 
-from annotations.language.errors import LanguageError, Refusal
 from annotations.language.grounding import HearingReader
-from annotations.language.requests import StoppingWords
+from annotations.language.plans import StoppingWords
+from annotations.language.texts import LanguageError, Refusal
 from annotations.models import (
     Editable,
     Entity,
@@ -38,7 +38,7 @@ from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser
 from parser_service.parsers.oracle import GrammarOracle
 from parser_service.parsers.registry import ORACLE, untrained
-from parser_service.promotions.promoting import last_runs
+from parser_service.runs.promoting import last_runs
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.answerer import (
     LINES_TOGETHER,

@@ -6,7 +6,7 @@ from django import template
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
-from annotations.figures import decimals, percent
+from annotations.showing.figures import decimals, percent
 from parser_service.models import Evaluation
 from parser_service.results.accuracy_cells import PLANS_NOT_COMPARED
 from parser_service.results.measures import Measure, interval_of, is_known, share_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from django import template
 
-from parser_service.analyses.probes.probe_kinds import PROBE_KINDS
+from parser_service.reviews.probe_kinds import PROBE_KINDS
 
 register = template.Library()
 

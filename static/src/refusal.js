@@ -1,4 +1,4 @@
-// The slider over the bounds of a risk–coverage curve (templates/parser_service/analyses/_refusal.html): what the page holds
+// The slider over the bounds of a risk–coverage curve (templates/parser_service/results/_refusal.html): what the page holds
 // about the chosen point is shown, the chart marks it, and the URL names its bound.
 
 function keepInAddress(bound) {

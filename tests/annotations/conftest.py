@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.models import Campaign, World
 from tests.launched_campaigns import fill_household, launch_in
 from tests.replaying import made_once

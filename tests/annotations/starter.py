@@ -6,11 +6,9 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from annotations.importing.predicates_file import read_predicates
+from annotations.exchange.predicates_file import read_predicates
+from annotations.language.forms import Choice, Symbol, Wildcard
 from annotations.language.grammar import Production
-from annotations.language.ontology import Ontology
-from annotations.language.predicates import Predicate
-from annotations.language.symbols import Choice, Symbol, Wildcard
 from annotations.language.templates import (
     Generated,
     GeneratorFolder,
@@ -18,6 +16,7 @@ from annotations.language.templates import (
     generate,
     read_generator_folder,
 )
+from annotations.language.world import Ontology, Predicate
 from tests.annotations.language.ontology_files import read_ontology_folder
 
 STARTER = Path(__file__).parents[2] / "annotations" / "starter" / "household"

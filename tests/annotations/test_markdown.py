@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.markdown import rendered
+from annotations.showing.markdown import rendered
 from benchmarks.language.hostile_patterns import HostileText, seconds
 
 UNITS = (

@@ -6,27 +6,26 @@ from random import Random
 
 import pytest
 
-from annotations.checking.class_uses import why_kept
-from annotations.checking.production_check import ProductionEdit, check_production
-from annotations.checking.template_check import check_template
-from annotations.exporting.generator_export import generator_files
+from annotations.exchange.generator_export import generator_files
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.world_import import import_world
+from annotations.generation.class_uses import why_kept
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
-from annotations.language.errors import LanguageError, Position
-from annotations.language.forms import read_form
-from annotations.language.grounding import Anonymizer, deanonymize, ground, question_for
-from annotations.language.ontology import read_ontology, write_ontology
-from annotations.language.predicates import gloss, read_signatures
-from annotations.language.symbols import (
+from annotations.generation.production_check import ProductionEdit, check_production
+from annotations.generation.template_check import check_template
+from annotations.language.forms import (
     DEFAULT_CLASSES,
     EntityClass,
     SymbolReader,
+    read_form,
     require_token,
 )
+from annotations.language.grounding import Anonymizer, deanonymize, ground, question_for
+from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.world import gloss, read_ontology, read_signatures, write_ontology
 from annotations.models import Command, Entity, LogicalForm, World
 from annotations.rows.from_rows import classes_of, ontology_of, predicates_of
-from annotations.world_archive.world_import import import_world
-from tests.annotations.world_archive.packing import members_of, pack, pack_members
+from tests.annotations.exchange.packing import members_of, pack, pack_members
 
 POSE = EntityClass("pose", "pose", "poses", 20, "way to sit", is_closed=True)
 GARMENT = EntityClass("garment", "garment", "garments", 250, "garment")

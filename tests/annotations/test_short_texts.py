@@ -12,9 +12,7 @@ from tests.gpsr_site.backup.limits import fill_every_column
 
 # Who bounds a text that is not cut by its column, by the end of the column's name.
 TYPED = "people type it, and the form or the route refuses what is too long"
-NAMED = (
-    "a name of the world, bounded where files and people bring it (annotations/language/limits.py)"
-)
+NAMED = "a name of the world, bounded where files and people bring it (annotations/language/texts/limits.py)"
 FIXED = "a word, a key or a hash of a fixed length that the program makes"
 BOUNDED = {
     **dict.fromkeys(

@@ -7,9 +7,9 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 
-from annotations.figures import rough_duration
 from annotations.models import Job
 from annotations.models.background import Status
+from annotations.showing.figures import rough_duration
 from parser_service.models import TrainingRun
 
 

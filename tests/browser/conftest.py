@@ -11,7 +11,7 @@ from django.test import Client
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from tests.browser.chromium import CHROMIUM, MISSING
 from tests.browser.faults import AXE
 from tests.browser.variants import Variant

@@ -5,7 +5,7 @@ from __future__ import annotations
 from playwright.sync_api import expect
 
 from annotations.models import Job
-from tests.annotations.language.ontology.test_competition_folder import FOLDER
+from tests.annotations.language.world.test_competition_folder import FOLDER
 
 
 def test_a_folder_is_chosen_in_one_dialog(page_of, live_server, admin, tmp_path):

@@ -8,15 +8,14 @@ import jsonschema
 import pytest
 from pytest_django.live_server_helper import LiveServer
 
-from annotations.importing.generator_import import import_generator
-from annotations.importing.pair_import import import_pairs
-from annotations.language.plans import plan_schema
-from annotations.language.recipes import joint_plan_schema, task_plan_schema
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.pair_import import import_pairs
+from annotations.exchange.shipped_worlds import PARAPHRASES, SHIPPED_WORLDS
+from annotations.generation.freezing import freeze_split
+from annotations.language.plans import joint_plan_schema, plan_schema, task_plan_schema
 from annotations.models import ApiToken, World
-from annotations.splits.freezing import freeze_split
-from annotations.worlds.shipped_worlds import PARAPHRASES, SHIPPED_WORLDS
 from gpsr_client import Workbench
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import Shelf
 from tests.clients.conftest import parse_server  # noqa: F401

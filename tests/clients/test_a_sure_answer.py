@@ -9,7 +9,7 @@ import pytest
 from command_desk import CommandDesk
 from pytest_django.live_server_helper import LiveServer
 
-from annotations.language.recipes import joint_plan_schema, task_plan_schema
+from annotations.language.plans import joint_plan_schema, task_plan_schema
 from annotations.models import ApiToken
 from gpsr_client import Workbench
 from parser_service.serving.metrics import Metrics

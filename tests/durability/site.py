@@ -22,7 +22,7 @@ CSRF = "a" * 32
 FILL = """
 import json
 from django.test import Client
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.models import Membership, SemanticTemplate, User, World
 from tests.annotations.conftest import TINY, as_bytes
 import_generator("home", as_bytes(TINY))

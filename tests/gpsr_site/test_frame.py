@@ -15,7 +15,7 @@ from annotations.models import StoredProblem, World
 from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.workers import workers_now
 from parser_service.models import Promotion, Worker
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 
 
 def worker(seconds_ago: float, host: str = "", process: int = 0) -> Worker:

@@ -67,10 +67,10 @@ def train() -> None:
     """Give the world a nearest neighbour that has been trained, as a newcomer's world has one."""
     from annotations import background
     from annotations.background.kinds import carry_out
+    from annotations.exchange.starter_world import load_starter_world
     from annotations.models import World
-    from annotations.worlds.starter_world import load_starter_world
     from parser_service.models import TrainingRun
-    from parser_service.runs.requests.first_runs import request_first_runs
+    from parser_service.runs.first_runs import request_first_runs
 
     request_first_runs(load_starter_world(lambda _: None))
     while run := background.claim("load", "quick", TrainingRun):

@@ -110,7 +110,7 @@ def keep_asking(
     client: Any, runs: list[Any], given: argparse.Namespace, texts: list[str]
 ) -> Outcome:
     """Ask at a steady rate; promote the second and the third run meanwhile."""
-    from parser_service.promotions.promoting import promote
+    from parser_service.runs.promoting import promote
 
     outcome, expected = Outcome(), expected_answers(runs, texts)
     print(
@@ -168,7 +168,7 @@ def measure(given: argparse.Namespace) -> bool:
     """Return whether all holds."""
     from annotations.models import World
     from gpsr_site.processes import PARSE_SERVER, Supervisor
-    from parser_service.promotions.promoting import promote, promoted_run
+    from parser_service.runs.promoting import promote, promoted_run
     from parser_service.serving.parser_client import client
 
     world = World.objects.get(name=WORLD)

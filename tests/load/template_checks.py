@@ -104,8 +104,8 @@ def fill(people: int) -> tuple[list[str], int, list[tuple[str, str]]]:
     django.setup()
     from django.test import Client
 
+    from annotations.exchange.generator_import import import_generator
     from annotations.generation.generating import generate_pairs
-    from annotations.importing.generator_import import import_generator
     from annotations.models import Membership, SemanticTemplate, TaskCategory, User, World
 
     import_generator("gpsr2018", DATA / "generator-2018")

@@ -116,8 +116,8 @@ def fill(people: int, items: int, is_new: bool = True) -> list[str]:
     import django
 
     django.setup()
+    from annotations.labelling.enqueuing import WantedItem, enqueue
     from annotations.models import ApiToken, Membership, User, Utterance, World
-    from annotations.queueing.enqueuing import WantedItem, enqueue
 
     if is_new:
         World.objects.filter(name="load").delete()

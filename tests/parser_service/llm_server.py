@@ -14,8 +14,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from parser_service.parsers.llm import server_address
-from parser_service.parsers.llm.server_address import ModelServer, Patience
+from parser_service.parsers import server_address
+from parser_service.parsers.server_address import ModelServer, Patience
 
 MODEL = "tiny"
 REPORTED = "tiny-2026-07"

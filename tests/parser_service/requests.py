@@ -9,8 +9,7 @@ from typing import Any
 from django.db import connections
 
 from parser_service.models import TrainingRun
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.runs import lifecycle, run_requests
 
 
 def ask(split, **changes) -> TrainingRun:

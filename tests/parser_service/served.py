@@ -5,10 +5,10 @@ from __future__ import annotations
 from annotations.models import Entity, Ontology, Split, World
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
+from parser_service.runs import run_requests
 from parser_service.runs.checkpoints import model_folder, write_folder
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.split_pairs import training_pairs
-from parser_service.runs.training.train_run import make_parser
+from parser_service.runs.split_pairs import training_pairs
+from parser_service.runs.train_run import make_parser
 from tests.parser_service.made_up import make_split
 
 THINGS = [("object", "red cup"), ("object", "bowl"), ("room", "kitchen"), ("location", "desk")]

@@ -11,7 +11,7 @@ from parser_service.parsers import registry
 from parser_service.parsers.interface import Candidate, Parser
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 from tests.parser_service.made_up import make_split
-from tests.parser_service.runs.training.test_train_run import trained
+from tests.parser_service.runs.test_train_run import trained
 
 
 @dataclass(frozen=True)

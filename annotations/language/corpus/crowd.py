@@ -10,9 +10,15 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.forms import canonical_text, read_form
-from annotations.language.text import normalise_line
+from annotations.language.texts import (
+    LanguageError,
+    Position,
+    Problem,
+    error_at,
+    normalise_line,
+    warning_at,
+)
 
 MOST_ASSIGNMENTS = 20_000  # rows of a table
 MOST_ANSWERS = 300_000  # of a table

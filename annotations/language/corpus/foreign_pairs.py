@@ -6,10 +6,16 @@ import re
 from collections.abc import Iterator
 
 from annotations.language.corpus.written_pairs import PARTS, RecordFile, WrittenPair, contradictions
-from annotations.language.decoding import read_text
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.forms import Form, canonical_text, read_foreign_form
+from annotations.language.texts import (
+    LanguageError,
+    Position,
+    Problem,
+    error_at,
+    read_text,
+    say_count,
+    warning_at,
+)
 
 _SUFFIXES = ("txt", "tsv", "ccg")
 _BARE_LAMBDA = re.compile(r"(?:lambda|λ) [$?]\w")

@@ -12,7 +12,7 @@ from enum import StrEnum
 from random import Random
 from types import MappingProxyType
 
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts import LanguageError, Refusal
 
 KNOWN_SHARE = 0.1  # of the source commands of the training part
 KNOWN = "known"  # what the held-out pairs are called where parts are named

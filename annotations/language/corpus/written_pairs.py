@@ -7,11 +7,20 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from annotations.language.decoding import decode, require_something
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.forms import Form, canonical_text, read_form
-from annotations.language.text import TextChanges, normalise_record, say_changes
+from annotations.language.texts import (
+    LanguageError,
+    Position,
+    Problem,
+    TextChanges,
+    decode,
+    error_at,
+    normalise_record,
+    require_something,
+    say_changes,
+    say_count,
+    warning_at,
+)
 
 # Part → file name, and folder → (source, criterion): of the published corpus, and what others wrote.
 PART_FILES = {"train": "train.txt", "validation": "val.txt", "test": "test.txt"}

@@ -1,4 +1,4 @@
-"""Read, print, canonicalize and compare logical forms."""
+"""Symbols of a grammar and logical forms: read, print, canonicalize and compare them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,22 @@ from annotations.language.forms.canonical import (
     flatten_conjunctions,
 )
 from annotations.language.forms.conjunct_order import ConjunctOrder, conjunctions, head_of, order_of
+from annotations.language.forms.cursor import lone_closing_parentheses
 from annotations.language.forms.difference import Change, Difference, diff, diff_unordered
+from annotations.language.forms.entity_classes import (
+    DEFAULT_CLASSES,
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    MOST_CLASSES,
+    EntityClass,
+    EntityClasses,
+    is_token,
+    require_token,
+    wildcard_names,
+)
 from annotations.language.forms.foreign_forms import read_foreign_form
+from annotations.language.forms.kind_checks import kinds_in_form, kinds_in_pattern
 from annotations.language.forms.logic import (
     TermSpan,
     plain_marks,
@@ -19,6 +33,8 @@ from annotations.language.forms.logic import (
     read_template_form,
 )
 from annotations.language.forms.notations import to_corpus, to_reading, to_template
+from annotations.language.forms.printing import print_sequence, print_symbol, print_wildcard
+from annotations.language.forms.reader import SymbolReader, read_wildcard
 from annotations.language.forms.references import (
     ANTECEDENTS,
     PERSON,
@@ -28,6 +44,27 @@ from annotations.language.forms.references import (
     described_kind,
     kind_of_class,
     loose_references,
+)
+from annotations.language.forms.slot_places import (
+    SlotPlace,
+    places_in_form,
+    places_in_pattern,
+    slot_key,
+    split_head,
+)
+from annotations.language.forms.symbols import (
+    TYPES,
+    Choice,
+    Combination,
+    Comparison,
+    Condition,
+    Negation,
+    Nonterminal,
+    Symbol,
+    Symbols,
+    Text,
+    Wildcard,
+    walk_symbols,
 )
 from annotations.language.forms.terms import (
     CLASS_TOKEN,
@@ -51,55 +88,3 @@ from annotations.language.forms.terms import (
     with_part,
 )
 from annotations.language.forms.tree_distance import FormDistances
-
-__all__ = [
-    "ANTECEDENTS",
-    "CLASS_TOKEN",
-    "CONJUNCTION",
-    "PERSON",
-    "PERSON_PREDICATES",
-    "SEQUENCE",
-    "THING",
-    "THINGS",
-    "UNKNOWN",
-    "Application",
-    "Change",
-    "ConjunctOrder",
-    "Constant",
-    "Difference",
-    "Form",
-    "FormDistances",
-    "Lambda",
-    "Reference",
-    "TermSpan",
-    "Unknown",
-    "Variable",
-    "canonical_text",
-    "canonicalize",
-    "children",
-    "conjunctions",
-    "depth",
-    "described_kind",
-    "diff",
-    "diff_unordered",
-    "equivalent",
-    "flatten_conjunctions",
-    "free_variables",
-    "head_of",
-    "head_predicate",
-    "kind_of_class",
-    "loose_references",
-    "order_of",
-    "plain_marks",
-    "predicates",
-    "read_foreign_form",
-    "read_form",
-    "read_spans",
-    "read_template_form",
-    "size",
-    "to_corpus",
-    "to_reading",
-    "to_template",
-    "walk",
-    "with_part",
-]

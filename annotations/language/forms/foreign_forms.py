@@ -23,11 +23,18 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from annotations.language.errors import LanguageError, Offsets, Position
 from annotations.language.forms.canonical import canonical_text
 from annotations.language.forms.logic import read_form
 from annotations.language.forms.terms import Application, Constant, Form, Lambda, Variable
-from annotations.language.limits import MAX_FORM, MAX_INDEXED_BYTES, MAX_NESTING, MAX_PREDICATE
+from annotations.language.texts import (
+    MAX_FORM,
+    MAX_INDEXED_BYTES,
+    MAX_NESTING,
+    MAX_PREDICATE,
+    LanguageError,
+    Offsets,
+    Position,
+)
 
 # A constant in single quotation marks ends before a blank or parenthesis: o'brien is one without.
 _TOKEN = re.compile(r"""[()]|"[^"]*"|'[^'()"]*'(?=[\s()]|\Z)|[^\s()"]+|\"""")

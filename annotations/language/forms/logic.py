@@ -20,7 +20,8 @@ from typing import Any
 
 from lark import Lark, Token, Transformer, Tree, UnexpectedCharacters, UnexpectedInput, v_args
 
-from annotations.language.errors import LanguageError, Offsets, Position
+from annotations.language.forms.reader import read_wildcard
+from annotations.language.forms.symbols import Nonterminal, Wildcard
 from annotations.language.forms.terms import (
     UNKNOWN,
     Application,
@@ -32,16 +33,18 @@ from annotations.language.forms.terms import (
     Variable,
     children,
 )
-from annotations.language.limits import (
+from annotations.language.texts import (
     MAX_FORM,
     MAX_NESTING,
     MAX_NONTERMINAL,
     MAX_PREDICATE,
+    LanguageError,
+    Offsets,
+    Position,
     require_length,
     require_name,
     require_writable,
 )
-from annotations.language.symbols import Nonterminal, Wildcard, read_wildcard
 
 _SHIELDED = r'"[^"]*"|\{[^{}]*\}'  # parentheses in here do not count
 _NESTING = re.compile(

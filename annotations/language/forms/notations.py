@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypeGuard
 
+from annotations.language.forms.printing import print_wildcard
+from annotations.language.forms.symbols import Wildcard
 from annotations.language.forms.terms import (
     CLASS_TOKEN,
     Application,
@@ -16,7 +18,6 @@ from annotations.language.forms.terms import (
     Variable,
     children,
 )
-from annotations.language.symbols import Wildcard, print_wildcard
 
 _FIRST_LETTERS = "xyz"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from annotations.language.forms.symbols import Wildcard
 from annotations.language.forms.terms import (
     CONJUNCTION,
     SEQUENCE,
@@ -15,7 +16,6 @@ from annotations.language.forms.terms import (
     Variable,
     children,
 )
-from annotations.language.symbols import Wildcard
 
 # A λ of which one of these is said describes a person.
 PERSON_PREDICATES = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))

@@ -11,7 +11,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from annotations.language.symbols import DEFAULT_CLASSES, Nonterminal, Wildcard
+from annotations.language.forms.entity_classes import DEFAULT_CLASSES
+from annotations.language.forms.symbols import Nonterminal, Wildcard
 
 # Words of the notation: arguments that hold together, as the bodies of one λ do, and actions in order.
 CONJUNCTION = "and"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from annotations.language.errors import LanguageError, Position
+from annotations.language.texts import LanguageError, Position
 
 # For an answer that somebody waits for: a fraction of a second.
 CHECK_STEPS = 2_000_000

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import islice
 
+from annotations.language.forms import Nonterminal, Symbols, Text, Wildcard
 from annotations.language.grammar.budget import Budget
 from annotations.language.grammar.expander import Expander, anonymized
 from annotations.language.grammar.grammar import ROOT, Grammar
-from annotations.language.symbols import Nonterminal, Symbols, Text, Wildcard
 
 # No word of a grammar begins so.
 _MARK = "\0"

@@ -15,8 +15,8 @@ from itertools import chain, product
 from math import log10, prod
 from typing import Any, Generic, TypeAlias, TypeVar
 
+from annotations.language.forms import Choice, Nonterminal, Symbols, Text, Wildcard
 from annotations.language.grammar.budget import Budget
-from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard
 
 Item = TypeVar("Item")
 # Tracked nonterminal → the items it became, or what ``Compose`` gives for it; sorted by name.

@@ -7,22 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
-from annotations.language.decoding import EmptyFile, decode, read_text
-from annotations.language.errors import (
-    LanguageError,
-    Position,
-    Problem,
-    Severity,
-    error_at,
-    warning_at,
-)
-from annotations.language.grammar.grammar import ROOT, Grammar
-from annotations.language.grammar.productions import (
-    GrammarFile,
-    Production,
-    read_productions,
-)
-from annotations.language.symbols import (
+from annotations.language.forms import (
     DEFAULT_CLASSES,
     Choice,
     EntityClasses,
@@ -30,6 +15,23 @@ from annotations.language.symbols import (
     Symbol,
     Symbols,
     Wildcard,
+)
+from annotations.language.grammar.grammar import ROOT, Grammar
+from annotations.language.grammar.productions import (
+    GrammarFile,
+    Production,
+    read_productions,
+)
+from annotations.language.texts import (
+    EmptyFile,
+    LanguageError,
+    Position,
+    Problem,
+    Severity,
+    decode,
+    error_at,
+    read_text,
+    warning_at,
 )
 
 TEMPLATE_SUFFIX = "_semantics.txt"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from annotations.language.errors import LanguageError, Problem
+from annotations.language.forms import Choice, Nonterminal, Symbols, Text, Wildcard, walk_symbols
 from annotations.language.grammar.budget import Budget
 from annotations.language.grammar.expander import Expander, anonymized, readable
 from annotations.language.grammar.grammar_problems import (
@@ -18,7 +18,7 @@ from annotations.language.grammar.grammar_problems import (
 )
 from annotations.language.grammar.graph import Traversal, length, lengths, reachable, traverse
 from annotations.language.grammar.productions import Production
-from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard, walk_symbols
+from annotations.language.texts import LanguageError, Problem
 
 ROOT = "Main"
 

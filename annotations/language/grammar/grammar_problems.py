@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from itertools import groupby
 
-from annotations.language.errors import Position, Problem, error_at, warning_at
+from annotations.language.forms import Symbols, Text, Wildcard, print_sequence
 from annotations.language.grammar.budget import Budget, TooManyCombinations
 from annotations.language.grammar.expander import Expander
 from annotations.language.grammar.graph import (
@@ -18,7 +18,7 @@ from annotations.language.grammar.graph import (
     reachable,
 )
 from annotations.language.grammar.productions import Production
-from annotations.language.symbols import Symbols, Text, Wildcard, print_sequence
+from annotations.language.texts import Position, Problem, error_at, warning_at
 
 # Lines with more expansions than this are not compared: somebody waits for the answer.
 COMPARED_EXPANSIONS = 2_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from annotations.language.symbols import Choice, Nonterminal, Symbols, Text
+from annotations.language.forms import Choice, Nonterminal, Symbols, Text
 
 # Known grammars nest at most 15 deep; this keeps recursion over a grammar far below Python's limit.
 MAX_HEIGHT = 80

@@ -5,22 +5,23 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from annotations.language.errors import (
-    LanguageError,
-    Offsets,
-    Position,
-    Problem,
-    error_at,
-    warning_at,
-)
-from annotations.language.limits import MAX_NONTERMINAL, require_name
-from annotations.language.symbols import (
+from annotations.language.forms import (
     DEFAULT_CLASSES,
     EntityClasses,
     SymbolReader,
     Symbols,
     lone_closing_parentheses,
     print_sequence,
+)
+from annotations.language.texts import (
+    MAX_NONTERMINAL,
+    LanguageError,
+    Offsets,
+    Position,
+    Problem,
+    error_at,
+    require_name,
+    warning_at,
 )
 
 # In this order: an escaped character, a block, an unclosed block, a comment to the end of the line.

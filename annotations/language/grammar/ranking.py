@@ -18,9 +18,9 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import accumulate
 from typing import TypeAlias
 
+from annotations.language.forms import Choice, Nonterminal, Symbol, Symbols, Text, Wildcard
 from annotations.language.grammar.budget import Budget
 from annotations.language.grammar.expander import Expander, Part, anonymized
-from annotations.language.symbols import Choice, Nonterminal, Symbol, Symbols, Text, Wildcard
 
 # A set of atoms, one bit each.
 Atoms: TypeAlias = int

@@ -12,11 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from annotations.language.forms import Choice, Nonterminal, Symbols, Text, Wildcard
 from annotations.language.grammar.budget import Budget
 from annotations.language.grammar.expander import Expander, Part
 from annotations.language.grammar.grammar import ROOT, Grammar
 from annotations.language.grammar.lattice import Lattice
-from annotations.language.symbols import Choice, Nonterminal, Symbols, Text, Wildcard
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Replace wildcards and class tokens with entities, and back; say what stays open."""
+"""Entities to class tokens and back: what was heard, who has which role, what a text names."""
 
 from __future__ import annotations
 
@@ -40,48 +40,3 @@ from annotations.language.grounding.roles import (
 )
 from annotations.language.grounding.utterance_lattice import HeardLattice, UtteranceReader
 from annotations.language.grounding.utterance_mentions import UtteranceMentions, are_alike
-
-__all__ = [
-    "NOT_UNDERSTOOD",
-    "QUESTION_WORD",
-    "Anonymized",
-    "Anonymizer",
-    "Deanonymized",
-    "Evidence",
-    "FormSlots",
-    "Grounded",
-    "HeardChange",
-    "HeardLattice",
-    "HeardText",
-    "HearingReader",
-    "RoleCounts",
-    "Slot",
-    "SlotPath",
-    "SlotRole",
-    "Span",
-    "UtteranceMentions",
-    "UtteranceReader",
-    "applied",
-    "are_alike",
-    "as_pair",
-    "choices_of",
-    "class_of",
-    "context_of",
-    "deanonymize",
-    "fill_all",
-    "filled",
-    "ground",
-    "ground_like",
-    "ground_text",
-    "is_asked_plainly",
-    "may_fill",
-    "named_entities",
-    "noun_for",
-    "open_slots_as_json",
-    "question_for",
-    "resolve_slots",
-    "role_of",
-    "tokens_of",
-    "with_values",
-    "words_of",
-]

@@ -8,10 +8,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from annotations.language.english import looks_plural, spellings
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import EntityClasses
-from annotations.language.text import places_of
+from annotations.language.forms import EntityClasses
+from annotations.language.texts import looks_plural, places_of, spellings
+from annotations.language.world import Entity, Ontology
 
 _TOKEN = re.compile(r"<\w+>|\w+|[^\w\s]")
 # A grounded question becomes this word; the question itself is only in the note.

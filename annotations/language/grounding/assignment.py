@@ -9,7 +9,7 @@ from itertools import permutations, zip_longest
 
 from annotations.language.grounding.role_evidence import Evidence
 from annotations.language.grounding.roles import Context, SlotRole
-from annotations.language.ontology import Entity
+from annotations.language.world import Entity
 
 # Log odds by which the best assignment of a slot has to win to be certain: 20 to 1.
 MARGIN = 3.0

@@ -20,7 +20,7 @@ from annotations.language.grounding.assignment import Mention, SlotChoice, assig
 from annotations.language.grounding.role_evidence import Evidence, default_evidence
 from annotations.language.grounding.roles import SlotPath, SlotRole, role_of
 from annotations.language.grounding.utterance_mentions import UtteranceMentions
-from annotations.language.ontology import Ontology
+from annotations.language.world import Ontology
 
 _CLASS_TOKEN = re.compile(r"<\w+>")
 _NUMBER = re.compile(r"(?<!\d)\d+(?=>?$)")

@@ -7,9 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
 
-from annotations.language.errors import LanguageError
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import (
+from annotations.language.forms import (
     Combination,
     Comparison,
     Condition,
@@ -17,6 +15,8 @@ from annotations.language.symbols import (
     Wildcard,
     print_wildcard,
 )
+from annotations.language.texts import LanguageError
+from annotations.language.world import Entity, Ontology
 
 Identity = tuple[str, int | None]
 Drawn = Mapping[Identity, Entity]

@@ -10,12 +10,22 @@ from itertools import count
 from random import Random
 from typing import TypeAlias
 
-from annotations.language.english import OBFUSCATED, PRONOUNS
-from annotations.language.forms import Application, Constant, Form, Lambda
+from annotations.language.forms import (
+    Application,
+    Choice,
+    Constant,
+    Form,
+    Lambda,
+    Symbol,
+    Symbols,
+    Text,
+    Wildcard,
+    read_wildcard,
+)
 from annotations.language.grammar import anonymized
 from annotations.language.grounding.drawing import Drawn, draw, wildcards_in
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import Choice, Symbol, Symbols, Text, Wildcard, read_wildcard
+from annotations.language.texts import OBFUSCATED, PRONOUNS
+from annotations.language.world import Entity, Ontology
 
 Leaves: TypeAlias = "tuple[Text | Wildcard, ...]"
 

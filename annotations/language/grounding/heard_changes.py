@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
-from annotations.language.text import places_of
+from annotations.language.texts import places_of
 
 # A word with the apostrophes inside it, a class token, or a sign.
 _TOKEN = re.compile(r"<\w+>|\w+(?:['’]\w+)*|[^\w\s]")

@@ -18,7 +18,26 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from annotations.language.english import (
+from annotations.language.grammar import Arc, Lattice
+from annotations.language.grounding.anonymizer import Reading, readings_of
+from annotations.language.grounding.heard_changes import (
+    HeardChange,
+    ReadWords,
+    applied,
+    changes_between,
+    fold,
+    spoken_words,
+)
+from annotations.language.grounding.utterance_lattice import (
+    SKIPPED,
+    Everything,
+    HeardLattice,
+    Name,
+    Skip,
+    UtteranceReader,
+    skipping,
+)
+from annotations.language.texts import (
     ARTICLES,
     BOUNDARIES,
     CALLS,
@@ -43,25 +62,6 @@ from annotations.language.english import (
     Near,
     NearWords,
     is_common,
-)
-from annotations.language.grammar import Arc, Lattice
-from annotations.language.grounding.anonymizer import Reading, readings_of
-from annotations.language.grounding.heard_changes import (
-    HeardChange,
-    ReadWords,
-    applied,
-    changes_between,
-    fold,
-    spoken_words,
-)
-from annotations.language.grounding.utterance_lattice import (
-    SKIPPED,
-    Everything,
-    HeardLattice,
-    Name,
-    Skip,
-    UtteranceReader,
-    skipping,
 )
 
 # Costs, beside those of near words.

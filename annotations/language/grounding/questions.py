@@ -6,10 +6,9 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from annotations.language.forms import Form
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses, Form
 from annotations.language.grounding.deanonymizer import Deanonymized, Slot
-from annotations.language.predicates import Predicate, ask_for
-from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
+from annotations.language.world import Predicate, ask_for
 
 NOT_UNDERSTOOD = "I did not understand that. What shall I do?"
 MOST_OFFERED = 4  # entities of the ontology that a question lists

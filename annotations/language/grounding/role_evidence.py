@@ -14,12 +14,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from annotations.language.english import CHOOSING_WORDS, sample_commands
 from annotations.language.forms import (
     Application,
     Constant,
     Form,
     Lambda,
+    Symbols,
+    Text,
+    Wildcard,
     canonical_text,
     children,
     read_form,
@@ -35,8 +37,8 @@ from annotations.language.grounding.roles import (
     tokens_of,
     words_of,
 )
-from annotations.language.ontology import Entity
-from annotations.language.symbols import Symbols, Text, Wildcard
+from annotations.language.texts import CHOOSING_WORDS, sample_commands
+from annotations.language.world import Entity
 
 _FROM_SIMILAR = 2.0  # pairs that what is known of similar roles counts for
 _FROM_NOWHERE = 1.0  # pairs that knowing nothing counts for

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from annotations.language.english import DETERMINERS, GOING_WORDS, PERSON_WORDS, THING_WORDS
 from annotations.language.forms import (
     CONJUNCTION,
     Application,
@@ -15,6 +14,7 @@ from annotations.language.forms import (
     Variable,
     children,
 )
+from annotations.language.texts import DETERMINERS, GOING_WORDS, PERSON_WORDS, THING_WORDS
 
 SlotPath = tuple[int, ...]
 _WORD = re.compile(r"<\w+>|\w+(?:'\w+)?|[^\w\s]")

@@ -17,15 +17,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from annotations.language.english import (
-    COURTESY_ANYWHERE,
-    COURTESY_CLOSINGS,
-    COURTESY_OPENINGS,
-    DETERMINERS,
-    PERSON_WORDS,
-    REFERENCES,
-    THING_WORDS,
-)
 from annotations.language.forms import ANTECEDENTS, CLASS_TOKEN, PERSON, THING, kind_of_class
 from annotations.language.grammar import Arc, Lattice
 from annotations.language.grounding.anonymizer import (
@@ -44,7 +35,16 @@ from annotations.language.grounding.heard_changes import (
     spoken_words,
     tokens_of,
 )
-from annotations.language.ontology import Ontology
+from annotations.language.texts import (
+    COURTESY_ANYWHERE,
+    COURTESY_CLOSINGS,
+    COURTESY_OPENINGS,
+    DETERMINERS,
+    PERSON_WORDS,
+    REFERENCES,
+    THING_WORDS,
+)
+from annotations.language.world import Ontology
 
 _HYPHENS = frozenset("-‐‑–")
 _ARTICLES = {"a": "an", "an": "a"}

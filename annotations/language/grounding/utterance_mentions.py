@@ -7,7 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
-from annotations.language.english import (
+from annotations.language.grounding.anonymizer import Anonymized, Span
+from annotations.language.grounding.assignment import Mention
+from annotations.language.grounding.roles import Context, context_of, words_of
+from annotations.language.texts import (
     BOUNDARIES,
     CHOICE_FILLERS,
     CHOOSING_WORDS,
@@ -18,10 +21,7 @@ from annotations.language.english import (
     THING_WORDS,
     VAGUE_WORDS,
 )
-from annotations.language.grounding.anonymizer import Anonymized, Span
-from annotations.language.grounding.assignment import Mention
-from annotations.language.grounding.roles import Context, context_of, words_of
-from annotations.language.ontology import Ontology
+from annotations.language.world import Ontology
 
 # A member of a choice: the number of a span, or words that nothing explains.
 _Member = int | str

@@ -1,79 +1,85 @@
-"""Turn a form with entities into a plan: actions as data, as JSON and as a behaviour tree."""
+"""What a robot does: requests, plans, recipes and joint plans, and the dialogue that closes what is open."""
 
 from __future__ import annotations
 
-from annotations.language.plans.behavior_tree import (
-    TAKEN_NAMES,
-    Robust,
-    node_name,
-    port_name,
-    to_behavior_tree,
+from annotations.language.plans.alternatives import best_alternative
+from annotations.language.plans.applying import apply_recipes
+from annotations.language.plans.behavior_tree import TAKEN_NAMES, Robust, to_behavior_tree
+from annotations.language.plans.book import (
+    DEFAULT_BOOK,
+    RecipeBook,
+    ShippedBook,
+    default_book,
+    read_book,
+    shipped_books,
 )
-from annotations.language.plans.descriptions import AT
+from annotations.language.plans.comparing import plan_key, same_plan
+from annotations.language.plans.cutting import Islands, Judge, Piece, cut, cut_at_joints, sentences
+from annotations.language.plans.fitting import Exchange, Fit, Left, best_fitting, exchange, fit
+from annotations.language.plans.habitual_places import UsualPlaces, usual_places
+from annotations.language.plans.joint_plans import (
+    METRES,
+    MOST_COMMANDS,
+    Distances,
+    JointPlan,
+    NoteKind,
+    Reason,
+    TooManyCommands,
+    WrongDistance,
+    join,
+    joint_plan_schema,
+    joint_plan_schema_text,
+    say_length,
+)
 from annotations.language.plans.lookup import Lookup
+from annotations.language.plans.machine import (
+    ATTEMPTS,
+    PATIENCE,
+    DialogueManager,
+    DialogueState,
+    Offer,
+    Phase,
+    progress,
+    shall_i,
+)
 from annotations.language.plans.plan import (
     ASK,
     ActionName,
-    Condition,
     Described,
     Named,
     Number,
-    OpenArgument,
-    OpenValue,
     Operator,
     Plan,
-    PlanOf,
-    PlanProblem,
     Referred,
-    SaidWords,
-    Step,
     StepResult,
     TaskValue,
     Trouble,
-    Unresolved,
     Value,
     Words,
     behavior_tree_schema_text,
     plan_schema,
     plan_schema_text,
 )
-from annotations.language.plans.planning import argument_names, make_plan
+from annotations.language.plans.planning import make_plan
+from annotations.language.plans.qualifying import Objection, is_qualified, objections, says_number
+from annotations.language.plans.reactions import Reaction, reaction_of
+from annotations.language.plans.reading import MAX_ROW, read_primitive, read_recipe
+from annotations.language.plans.request_kinds import other_requests
+from annotations.language.plans.rows import (
+    AFTER_COMMANDS,
+    ActionPattern,
+    EffectKind,
+    Primitive,
+    Recipe,
+)
+from annotations.language.plans.speaking import spoken
+from annotations.language.plans.stopping import NearCommands, StoppingWords, with_entities
+from annotations.language.plans.task_plan import (
+    RecipeTrouble,
+    TaskPlan,
+    TaskStep,
+    task_plan_schema,
+    task_plan_schema_text,
+)
 from annotations.language.plans.unresolved import COMMAND, said_words
-
-__all__ = [
-    "ASK",
-    "AT",
-    "COMMAND",
-    "TAKEN_NAMES",
-    "ActionName",
-    "Condition",
-    "Described",
-    "Lookup",
-    "Named",
-    "Number",
-    "OpenArgument",
-    "OpenValue",
-    "Operator",
-    "Plan",
-    "PlanOf",
-    "PlanProblem",
-    "Referred",
-    "Robust",
-    "SaidWords",
-    "Step",
-    "StepResult",
-    "TaskValue",
-    "Trouble",
-    "Unresolved",
-    "Value",
-    "Words",
-    "argument_names",
-    "behavior_tree_schema_text",
-    "make_plan",
-    "node_name",
-    "plan_schema",
-    "plan_schema_text",
-    "port_name",
-    "said_words",
-    "to_behavior_tree",
-]
+from annotations.language.plans.word_use import WordUse

@@ -9,14 +9,14 @@ from annotations.language.forms import (
     CONJUNCTION,
     Application,
     Constant,
+    EntityClasses,
     Form,
     Lambda,
     Reference,
     Variable,
 )
 from annotations.language.plans.plan import Condition, Described, Number, OpenValue, Value
-from annotations.language.predicates import NAMING, SUPERLATIVES, Predicate, gloss
-from annotations.language.symbols import EntityClasses
+from annotations.language.world import NAMING, SUPERLATIVES, Predicate, gloss
 
 ValueOf = Callable[[Constant, str, int], Value]
 AT = "at"  # the predicate that says where something is

@@ -6,11 +6,10 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 
-from annotations.language.english import ANY_OBJECT, KINDS_OF_PLACES, spellings
 from annotations.language.grounding import QUESTION_WORD
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans.plan import Named, Value, Words
-from annotations.language.predicates import Predicate, is_entity_kind
+from annotations.language.texts import ANY_OBJECT, KINDS_OF_PLACES, spellings
+from annotations.language.world import Entity, Ontology, Predicate, is_entity_kind
 
 # Words in the place of an entity that name none: any category, any question, where the robot is.
 NEUTRAL_WORDS = frozenset((ANY_OBJECT, QUESTION_WORD, "current"))

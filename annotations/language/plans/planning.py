@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 
-from annotations.language.english import ARGUMENT_NAMES, NEEDED_ARGUMENTS
 from annotations.language.forms import (
     ANTECEDENTS,
     CONJUNCTION,
@@ -30,7 +29,6 @@ from annotations.language.forms import (
     walk,
 )
 from annotations.language.grounding import NOT_UNDERSTOOD, Slot, named_entities, question_for
-from annotations.language.ontology import Ontology
 from annotations.language.plans.descriptions import (
     Describer,
     is_description,
@@ -56,8 +54,10 @@ from annotations.language.plans.plan import (
     Words,
 )
 from annotations.language.plans.unresolved import COMMAND, Gaps, said_words
-from annotations.language.predicates import (
+from annotations.language.texts import ARGUMENT_NAMES, NEEDED_ARGUMENTS
+from annotations.language.world import (
     ArgumentKind,
+    Ontology,
     Predicate,
     PredicateKind,
     argument_kind,

@@ -15,8 +15,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import Constant, Form, canonical_text, walk
+from annotations.language.forms import Constant, Form, Text, Wildcard, canonical_text, walk
 from annotations.language.grammar import (
     Alternative,
     Arc,
@@ -29,7 +28,6 @@ from annotations.language.grammar import (
     TooManyCombinations,
     intact,
 )
-from annotations.language.symbols import Text, Wildcard
 from annotations.language.templates.composition import (
     Leaves,
     SynchronousGrammar,
@@ -45,6 +43,7 @@ from annotations.language.templates.filling import (
     map_slots,
 )
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import LanguageError
 
 MOST_READINGS = 2  # of one rule between two places: two show an ambiguity
 # What work costs in steps of a budget: filling a form and printing it; joining two readings.

@@ -15,19 +15,19 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
-from annotations.language.forms import Form
-from annotations.language.grammar import Grammar, Production
-from annotations.language.symbols import (
+from annotations.language.forms import (
     Choice,
     Combination,
     Comparison,
     Condition,
+    Form,
     Negation,
     Symbol,
     Symbols,
     Text,
     Wildcard,
 )
+from annotations.language.grammar import Grammar, Production
 from annotations.language.templates.filling import map_slots
 from annotations.language.templates.templates import SemanticTemplate
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Budget, Grammar, TooManyCombinations, readable
 from annotations.language.templates.composition import lines_of
 from annotations.language.templates.grammar_expansions import (
@@ -15,6 +14,7 @@ from annotations.language.templates.grammar_expansions import (
     too_many_commands,
 )
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import LanguageError, Problem
 
 # A command of the 2019 grammar takes 40; discarded combinations count too.
 STEPS_PER_COMMAND = 200

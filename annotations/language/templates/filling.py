@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import (
     SEQUENCE,
     UNKNOWN,
@@ -15,10 +14,14 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Nonterminal,
+    Text,
     Unknown,
+    Wildcard,
+    print_symbol,
+    read_wildcard,
 )
-from annotations.language.limits import MAX_PREDICATE
-from annotations.language.symbols import Nonterminal, Text, Wildcard, print_symbol, read_wildcard
+from annotations.language.texts import MAX_PREDICATE, LanguageError
 
 # Anonymized words, or the leaves with their wildcards.
 Filler: TypeAlias = "tuple[str | Text | Wildcard, ...]"

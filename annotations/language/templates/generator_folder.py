@@ -9,15 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
-from annotations.language.decoding import EmptyFile, read_folder, read_text
-from annotations.language.errors import (
-    LanguageError,
-    Position,
-    Problem,
-    Severity,
-    error_at,
-    warning_at,
-)
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses
 from annotations.language.grammar import (
     ROOT,
     TEMPLATE_SUFFIX,
@@ -25,10 +17,21 @@ from annotations.language.grammar import (
     GrammarFolder,
     read_grammar_files,
 )
-from annotations.language.limits import MAX_TASK_CATEGORY, require_name
-from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.templates import SemanticTemplate, read_templates
+from annotations.language.texts import (
+    MAX_TASK_CATEGORY,
+    EmptyFile,
+    LanguageError,
+    Position,
+    Problem,
+    Severity,
+    error_at,
+    read_folder,
+    read_text,
+    require_name,
+    warning_at,
+)
 
 _NUMBERED = re.compile(r"(?P<prefix>.*)category_?(?P<number>\d+)", re.IGNORECASE)
 # Category 2 reuses the templates of category 1; every other one has only its own.

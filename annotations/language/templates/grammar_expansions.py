@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError, Problem, warning_at
 from annotations.language.forms import Form
 from annotations.language.grammar import Budget, Grammar, Recognizer, readable
 from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.filling import Precedence
 from annotations.language.templates.synchronous import TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import LanguageError, Problem, warning_at
 
 # Command → its forms, the one to keep last; more than one where a template is ambiguous.
 Pairs: TypeAlias = Mapping[str, tuple[str, ...]]

@@ -5,21 +5,30 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
 
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError, Offsets, Problem, error_at, warning_at
-from annotations.language.forms import Application, loose_references, read_form, walk
-from annotations.language.grammar import Budget, TooManyCombinations
-from annotations.language.symbols import (
+from annotations.language.forms import (
+    Application,
     Choice,
     Nonterminal,
     Symbols,
+    loose_references,
     places_in_form,
     places_in_pattern,
+    read_form,
+    walk,
 )
+from annotations.language.grammar import Budget, TooManyCombinations
 from annotations.language.templates.composition import SynchronousGrammar
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.synchronous import TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import (
+    LanguageError,
+    Offsets,
+    Problem,
+    error_at,
+    say_count,
+    warning_at,
+)
 
 # For the phrases of all lines of a task category: about a second.
 LINE_STEPS = 5_000_000

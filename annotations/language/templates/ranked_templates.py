@@ -16,8 +16,7 @@ from itertools import chain
 from random import Random
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import canonical_text
+from annotations.language.forms import Choice, Symbols, canonical_text
 from annotations.language.grammar import (
     CHECK_STEPS,
     Atoms,
@@ -30,12 +29,11 @@ from annotations.language.grammar import (
     RankedSequence,
     Ranking,
 )
-from annotations.language.limits import MAX_INDEXED_BYTES
-from annotations.language.symbols import Choice, Symbols
 from annotations.language.templates.composition import SynchronousGrammar, names_in_order
 from annotations.language.templates.filling import Composed, fill_anonymized, precedence_of
 from annotations.language.templates.synchronous import Derivation, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import MAX_INDEXED_BYTES, LanguageError
 
 # (nonterminal, number of the line): how often a sample has it.
 LineCounts: TypeAlias = "Counter[tuple[str, int]]"

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Self
 
-from annotations.language.errors import Refusal
 from annotations.language.grammar import readable
+from annotations.language.texts import Refusal
 
 # Python refuses to print numbers that are longer. A language of more derivations is said to have so many.
 MOST_COUNTED = 10**4_000

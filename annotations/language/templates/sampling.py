@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from itertools import accumulate
 from random import Random
 
-from annotations.language.errors import LanguageError, Problem
 from annotations.language.grammar import Expander, Recognizer, RuleBook, Run, anonymized, readable
 from annotations.language.templates.chart import ChartDerivation, TemplateChart
 from annotations.language.templates.composition import SynchronousGrammar
@@ -35,6 +34,7 @@ from annotations.language.templates.ranked_templates import (
     RankedTemplate,
 )
 from annotations.language.templates.sample_notes import Balance, SampleNote, SampleRequest
+from annotations.language.texts import LanguageError, Problem
 
 # A sample that asks for every form looks at all of them first: about 10,000 a second.
 MOST_FORMS = 100_000

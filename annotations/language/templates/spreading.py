@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Iterator
 from random import Random
 
-from annotations.language.errors import LanguageError
 from annotations.language.grammar import TooManyCombinations
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.ranked_templates import LineCounts, RankedGrammar
 from annotations.language.templates.synchronous import Derivation
+from annotations.language.texts import LanguageError
 
 
 def spread_derivations(

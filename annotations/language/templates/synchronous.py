@@ -7,8 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import Application, Form, Lambda, canonical_text
+from annotations.language.forms import Application, Form, Lambda, Text, Wildcard, canonical_text
 from annotations.language.grammar import (
     MAX_WORDS,
     Budget,
@@ -18,8 +17,6 @@ from annotations.language.grammar import (
     anonymized,
     intact,
 )
-from annotations.language.limits import MAX_INDEXED_BYTES
-from annotations.language.symbols import Text, Wildcard
 from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.composition import (
     SynchronousGrammar,
@@ -38,6 +35,7 @@ from annotations.language.templates.filling import (
     precedence_of,
 )
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import MAX_INDEXED_BYTES, LanguageError
 
 # The predicate of a term that stands in for an action of a line.
 STAND_IN = "action of a line"

@@ -7,39 +7,24 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from annotations.language.english import say_count
-from annotations.language.errors import (
-    LanguageError,
-    Offsets,
-    Position,
-    Problem,
-    error_at,
-    warning_at,
+from annotations.language.forms import (
+    Form,
+    Nonterminal,
+    Symbols,
+    Unknown,
+    Wildcard,
+    places_in_form,
+    places_in_pattern,
+    print_wildcard,
+    read_spans,
+    slot_key,
 )
-from annotations.language.forms import Form, Unknown, read_spans
 from annotations.language.grammar import (
     CHECK_STEPS,
     Budget,
     Grammar,
     Recognizer,
     TooManyCombinations,
-)
-from annotations.language.predicates import (
-    Misuse,
-    Predicate,
-    PredicateKind,
-    Signature,
-    find_misuses,
-    infer_signatures,
-)
-from annotations.language.symbols import (
-    Nonterminal,
-    Symbols,
-    Wildcard,
-    places_in_form,
-    places_in_pattern,
-    print_wildcard,
-    slot_key,
 )
 from annotations.language.templates.expansion import Conflict, Generated, TaskCategory
 from annotations.language.templates.filling import bare
@@ -56,6 +41,23 @@ from annotations.language.templates.line_checks import (
 )
 from annotations.language.templates.synchronous import STAND_IN, TemplateExpander
 from annotations.language.templates.templates import SemanticTemplate
+from annotations.language.texts import (
+    LanguageError,
+    Offsets,
+    Position,
+    Problem,
+    error_at,
+    say_count,
+    warning_at,
+)
+from annotations.language.world import (
+    Misuse,
+    Predicate,
+    PredicateKind,
+    Signature,
+    find_misuses,
+    infer_signatures,
+)
 
 # A template is checked as it is typed, so only this many of its pairs are looked at.
 CHECKED_PAIRS = 2_000

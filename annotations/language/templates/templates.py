@@ -11,33 +11,35 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
-from annotations.language.errors import LanguageError, Position, Problem, error_at, warning_at
 from annotations.language.forms import (
+    DEFAULT_CLASSES,
     UNKNOWN,
     Application,
-    Form,
-    plain_marks,
-    read_template_form,
-    to_template,
-    walk,
-)
-from annotations.language.limits import (
-    MAX_NONTERMINAL,
-    MAX_PATTERN,
-    require_length,
-    require_name,
-)
-from annotations.language.symbols import (
-    DEFAULT_CLASSES,
     EntityClasses,
+    Form,
     Nonterminal,
     SymbolReader,
     Symbols,
     Wildcard,
     kinds_in_form,
     kinds_in_pattern,
+    plain_marks,
     print_sequence,
+    read_template_form,
     split_head,
+    to_template,
+    walk,
+)
+from annotations.language.texts import (
+    MAX_NONTERMINAL,
+    MAX_PATTERN,
+    LanguageError,
+    Position,
+    Problem,
+    error_at,
+    require_length,
+    require_name,
+    warning_at,
 )
 
 # An escaped character, a brace, an equals sign, or the comment that ends the line.

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.exporting.rephrased_export import RephrasedExport, RephrasedFormat
+from annotations.exchange.rephrased_export import RephrasedExport, RephrasedFormat
 from annotations.language.corpus import Part
 from annotations.management.base import ReportingCommand, find_split, find_world
 

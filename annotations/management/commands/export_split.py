@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.exporting.split_export import SplitFormat, export_split
-from annotations.label_audit.label_changes import examples_before
+from annotations.exchange.split_export import SplitFormat, export_split
+from annotations.labelling.label_changes import examples_before
 from annotations.management.base import ReportingCommand, find_split, find_world
 
 

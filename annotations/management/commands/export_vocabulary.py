@@ -9,7 +9,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.exporting.vocabulary_export import (
+from annotations.exchange.vocabulary_export import (
     VocabularyFormat,
     VocabularyPart,
     vocabulary_file,

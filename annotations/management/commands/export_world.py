@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.exchange.world_export import archive_name, world_archive
 from annotations.management.base import ReportingCommand, find_world
-from annotations.world_archive.world_export import archive_name, world_archive
 
 
 class Command(ReportingCommand):

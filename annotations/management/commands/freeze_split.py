@@ -9,12 +9,12 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 from django.db import transaction
 
+from annotations.generation.freezing import as_items, freeze_split, unresolved_prompts
+from annotations.generation.split_statistics import counts_of
 from annotations.language.corpus import Criterion
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import Split
 from annotations.rows.synchronise import BATCH
-from annotations.splits.freezing import as_items, freeze_split, unresolved_prompts
-from annotations.splits.split_statistics import counts_of
 
 
 class Command(ReportingCommand):

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.importing.competition_import import import_competition
+from annotations.exchange.competition_import import import_competition
 from annotations.management.base import (
     RefusedReport,
     ReportingCommand,

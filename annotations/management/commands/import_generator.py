@@ -8,7 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.management.base import (
     RefusedReport,
     ReportingCommand,

@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.importing.pair_files import Notation
-from annotations.importing.pair_import import import_pairs
+from annotations.exchange.pair_files import Notation
+from annotations.exchange.pair_import import import_pairs
 from annotations.management.base import (
     RefusedReport,
     ReportingCommand,

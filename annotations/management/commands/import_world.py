@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.exchange.world_import import import_world
 from annotations.management.base import ReportingCommand
-from annotations.world_archive.world_import import import_world
 
 
 class Command(ReportingCommand):

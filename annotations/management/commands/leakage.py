@@ -8,8 +8,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.generation.split_statistics import leakage_of, near_duplicates_of
 from annotations.management.base import ReportingCommand, find_split, find_world
-from annotations.splits.split_statistics import leakage_of, near_duplicates_of
 
 
 class Command(ReportingCommand):

@@ -7,8 +7,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS, load_world
 from annotations.management.base import ReportingCommand
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, load_world
 
 
 class Command(ReportingCommand):

@@ -7,8 +7,8 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
+from annotations.exchange.normalising import normalise_world
 from annotations.management.base import ReportingCommand, find_world
-from annotations.world_archive.normalising import normalise_world
 
 
 class Command(ReportingCommand):

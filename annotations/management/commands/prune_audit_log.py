@@ -9,7 +9,7 @@ from typing import Any
 from django.core.management.base import CommandParser
 from django.utils import timezone
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.people.audit_log import prune
 

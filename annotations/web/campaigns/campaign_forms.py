@@ -12,8 +12,7 @@ from django.utils import timezone
 from annotations.campaigns.addresses import BadAddress, origins_in, require_public_address
 from annotations.campaigns.changing import CHANGEABLE, has_consents
 from annotations.campaigns.launching import PromptChoice
-from annotations.language.decoding import ENCODINGS
-from annotations.lists.filtering import Choices, PageFilters, Search
+from annotations.language.texts import ENCODINGS
 from annotations.models import Campaign, World
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
@@ -24,6 +23,7 @@ from annotations.models.campaigns import (
     wording_choices,
 )
 from annotations.people.access import WorldRequest
+from annotations.showing.filtering import Choices, PageFilters, Search
 from annotations.web.forms import choice_field
 
 MOST_PROMPTS_PER_FORM = 20

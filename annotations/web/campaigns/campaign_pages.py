@@ -17,14 +17,13 @@ from annotations.campaigns.closing import close, forget, renew_link, reopen, rev
 from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
 from annotations.campaigns.progress import progress_of
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError, Refusal
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.language.texts import LanguageError, Refusal, say_count
 from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.campaigns.campaign_forms import (
     CampaignChangeForm,
     CampaignFilters,

@@ -20,8 +20,8 @@ from annotations.campaigns.closing import close, forget, renew_link, reopen, rev
 from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching import launch
 from annotations.campaigns.progress import progress_of
-from annotations.exporting.split_export import SplitFormat
-from annotations.language.decoding import ENCODINGS
+from annotations.exchange.split_export import SplitFormat
+from annotations.language.texts import ENCODINGS
 from annotations.models import Campaign, Contributor, Duty, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
@@ -33,7 +33,6 @@ from annotations.models.campaigns import (
 )
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
-from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.campaigns.campaign_forms import (
     CONSENT,
     EXAMPLES,
@@ -62,6 +61,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsViewSet
 from annotations.web.rest.streaming import attachment
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
 
 READ_BY_ADMINS = dict.fromkeys(("list", "retrieve"), Duty.MANAGE)
 READ_SCOPES = dict.fromkeys(("list", "retrieve"), Scope.READ)

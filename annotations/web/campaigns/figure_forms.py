@@ -7,9 +7,9 @@ from typing import Any
 from django import forms
 
 from annotations.campaigns.paraphrase_figures import MOST_WANTED
-from annotations.lists.filtering import task_category_choices
 from annotations.models import Campaign, World
 from annotations.people.access import WorldRequest
+from annotations.showing.filtering import task_category_choices
 from annotations.web.campaigns.campaign_forms import campaign_choices
 from annotations.web.forms import choice_field
 

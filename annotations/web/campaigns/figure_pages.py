@@ -19,10 +19,10 @@ from annotations.campaigns.paraphrase_figures import (
     form_counts,
     target_of,
 )
-from annotations.figures import decimals
-from annotations.lists.listing import NumberedPages, Sort, render_list
 from annotations.models import Duty, World
 from annotations.people.access import WorldRequest, world_view
+from annotations.showing.figures import decimals
+from annotations.showing.listing import NumberedPages, Sort, render_list
 from annotations.web.campaigns.figure_forms import SHORT, FigureFilters, FormCountFilters
 
 FORM_SORTS = {

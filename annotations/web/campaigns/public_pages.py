@@ -18,8 +18,8 @@ from annotations.campaigns.limits import TooOften, count_task, require_patience
 from annotations.campaigns.pseudonyms import ASSIGNMENT_IDS
 from annotations.campaigns.taboo import taboo_words_for
 from annotations.campaigns.tasks import CampaignOver, begin, require_open
-from annotations.language.english import say_count
-from annotations.language.paraphrases import RewriteFault, RewriteWarning
+from annotations.language.corpus import RewriteFault, RewriteWarning
+from annotations.language.texts import say_count
 from annotations.models import Campaign, Submission
 from annotations.models.campaigns import MOST_PLACES
 from annotations.models.corpus import MOST_CHARACTERS

@@ -10,14 +10,14 @@ from django.db.models import QuerySet, TextField
 from django.db.models.functions import Cast
 
 from annotations.campaigns.model_rewrites import NO_REWRITE
-from annotations.language.paraphrases import FlagCode
-from annotations.lists.filtering import Choices, Key, PageFilters, Search
+from annotations.language.corpus import FlagCode
 from annotations.models.campaigns import (
     SubmissionKind,
     contributor_kind_choices,
     submission_status_choices,
 )
 from annotations.people.access import WorldRequest
+from annotations.showing.filtering import Choices, Key, PageFilters, Search
 
 # What a flag is called on pages.
 FLAG_LABELS = {

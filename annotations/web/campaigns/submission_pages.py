@@ -22,17 +22,16 @@ from annotations.campaigns.moderation import (
     take_back,
 )
 from annotations.labelling.proposal_requests import request_readings
-from annotations.language.english import say_count
-from annotations.language.errors import Refusal
-from annotations.language.paraphrases import FlagCode
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.language.corpus import FlagCode
+from annotations.language.texts import Refusal, say_count
 from annotations.models import Duty, Submission, User, World
 from annotations.models.campaigns import SubmissionKind, SubmissionQuerySet, SubmissionStatus
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.campaigns.submission_filters import SubmissionFilters
 from annotations.web.editing.undo import say_with_undo
 

@@ -22,14 +22,14 @@ from annotations.campaigns.moderation import (
     reject,
     take_back,
 )
-from annotations.exporting.split_export import SplitFormat
-from annotations.language.limits import MAX_FORM
-from annotations.lists.paging import LARGEST_INTEGER
+from annotations.exchange.split_export import SplitFormat
+from annotations.language.texts import MAX_FORM
 from annotations.models import Duty, Scope, Submission
 from annotations.models.campaigns import SubmissionKind
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.allowances import may_take_long
+from annotations.showing.paging import LARGEST_INTEGER
 from annotations.web.campaigns.submission_filters import SubmissionFilters
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.negotiation import AnyType

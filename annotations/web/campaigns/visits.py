@@ -33,7 +33,7 @@ from annotations.campaigns.pseudonyms import (
     pseudonym_of,
 )
 from annotations.campaigns.tasks import contributor_of, preview_places
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Campaign, Contributor, Submission
 
 KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known

@@ -7,11 +7,11 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
 from annotations.generation.complexity import complexity as complexity_of
-from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, LogicalForm, Paraphrase, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import WorldRequest, world_view
 from annotations.rows.occurrences import MOST_SHOWN
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.corpus.corpus_filters import (
     CommandFilters,
     CommandsOfLogicalFormFilters,

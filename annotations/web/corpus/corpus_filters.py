@@ -5,7 +5,12 @@ from __future__ import annotations
 import django_filters
 from django import forms
 
-from annotations.lists.filtering import (
+from annotations.models.corpus import (
+    origin_choices,
+    paraphrase_status_choices,
+    utterance_status_choices,
+)
+from annotations.showing.filtering import (
     Head,
     Key,
     Mentions,
@@ -13,11 +18,6 @@ from annotations.lists.filtering import (
     Search,
     predicate_choices,
     task_category_choices,
-)
-from annotations.models.corpus import (
-    origin_choices,
-    paraphrase_status_choices,
-    utterance_status_choices,
 )
 
 CHOICES_OF_FORMS = {

@@ -10,11 +10,11 @@ from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
 from rest_framework.response import Response
 
-from annotations.language.limits import MAX_FORM
-from annotations.lists.paging import LARGEST_INTEGER
+from annotations.labelling.item_answers import take_answer_back
+from annotations.language.texts import MAX_FORM
 from annotations.models import Duty, Label
 from annotations.models.corpus import MOST_CHARACTERS, verdict_choices
-from annotations.queueing.item_answers import take_answer_back
+from annotations.showing.paging import LARGEST_INTEGER
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldViewSet

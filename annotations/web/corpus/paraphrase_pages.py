@@ -7,15 +7,15 @@ from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.editing.edits import Overtaken
-from annotations.label_audit.label_decisions import correct_label
 from annotations.labelling.entity_spans import anonymizer_of
 from annotations.labelling.form_check import check_label
-from annotations.language.errors import LanguageError
-from annotations.lists.listing import Listing, Sort, render_list
+from annotations.labelling.giving import NotForThem, kinds_for
+from annotations.labelling.label_decisions import correct_label
+from annotations.language.texts import LanguageError
 from annotations.models import Duty, WorkKind, World
 from annotations.people.access import WRITE, WorldRequest, world_view
-from annotations.queueing.giving import NotForThem, kinds_for
 from annotations.rows.occurrences import MOST_SHOWN, examples_of_pair, logical_form_of
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.corpus.corpus_filters import ParaphraseFilters
 
 SORTS = {

@@ -13,9 +13,9 @@ from rest_framework.decorators import action
 from rest_framework.response import Response
 
 from annotations.editing.edits import delete
-from annotations.exporting.rephrased_export import RephrasedExport, RephrasedFormat
-from annotations.label_audit.label_decisions import correct_label
-from annotations.language.limits import MAX_FORM
+from annotations.exchange.rephrased_export import RephrasedExport, RephrasedFormat
+from annotations.labelling.label_decisions import correct_label
+from annotations.language.texts import MAX_FORM
 from annotations.models import Duty, Paraphrase
 from annotations.models.splits import part_choices
 from annotations.people.allowances import may_take_long

@@ -11,16 +11,8 @@ from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 
-from annotations.language.decoding import ENCODINGS
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError
-from annotations.lists.filtering import PageFilters, Search
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.models import Duty, Upload, World
-from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
-from annotations.people.allowances import may_take_long
-from annotations.utterances.upload_reading import FORMAT_NAMES, TABLES
-from annotations.utterances.utterance_uploads import (
+from annotations.labelling.upload_reading import FORMAT_NAMES, TABLES
+from annotations.labelling.utterance_uploads import (
     NotNow,
     Preview,
     ReadingChoices,
@@ -30,6 +22,12 @@ from annotations.utterances.utterance_uploads import (
     store,
     undo,
 )
+from annotations.language.texts import ENCODINGS, LanguageError, say_count
+from annotations.models import Duty, Upload, World
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.allowances import may_take_long
+from annotations.showing.filtering import PageFilters, Search
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.editing.undo import say_with_undo
 
 HEADS = (("", "as recognised"), ("yes", "names of columns"), ("no", "a row like the others"))

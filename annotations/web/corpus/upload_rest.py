@@ -12,15 +12,8 @@ from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.response import Response
 
-from annotations.language.decoding import ENCODINGS
-from annotations.language.errors import LanguageError, Refusal
-from annotations.language.text import normalise_line
-from annotations.models import Duty, Upload
-from annotations.models.corpus import MOST_CHARACTERS_OF_NAME
-from annotations.people.allowances import may_take_long, takes_files
-from annotations.rows.stored_problems import as_json
-from annotations.utterances.upload_reading import MOST_BYTES, TABLES, UploadFormat
-from annotations.utterances.utterance_uploads import (
+from annotations.labelling.upload_reading import MOST_BYTES, TABLES, UploadFormat
+from annotations.labelling.utterance_uploads import (
     NotNow,
     Preview,
     ReadingChoices,
@@ -31,6 +24,11 @@ from annotations.utterances.utterance_uploads import (
     store,
     undo,
 )
+from annotations.language.texts import ENCODINGS, LanguageError, Refusal, normalise_line
+from annotations.models import Duty, Upload
+from annotations.models.corpus import MOST_CHARACTERS_OF_NAME
+from annotations.people.allowances import may_take_long, takes_files
+from annotations.rows.stored_problems import as_json
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser, FilesParser

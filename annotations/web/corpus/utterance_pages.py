@@ -12,23 +12,21 @@ from django.urls import reverse
 from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 
-from annotations.language.english import say_count
-from annotations.language.errors import LanguageError
-from annotations.language.text import normalise_line
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
-from annotations.models import Duty, Upload, Utterance, World
-from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
-from annotations.people.allowances import may_take_long, takes_files
-from annotations.utterances.upload_reading import MOST_BYTES, UploadFormat
-from annotations.utterances.utterance_deletion import delete_utterances, restore_utterances
-from annotations.utterances.utterance_uploads import (
+from annotations.labelling.upload_reading import MOST_BYTES, UploadFormat
+from annotations.labelling.utterance_deletion import delete_utterances, restore_utterances
+from annotations.labelling.utterance_uploads import (
     Preview,
     content_of,
     keep_waiting,
     preview,
     store,
 )
+from annotations.language.texts import LanguageError, normalise_line, say_count
+from annotations.models import Duty, Upload, Utterance, World
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.allowances import may_take_long, takes_files
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted
@@ -44,7 +42,7 @@ SORTS = {
 
 
 class UtterancesForm(forms.Form):
-    """Utterances to label: pasted, or in a file of any format that ``annotations.utterances`` reads."""
+    """Utterances to label: pasted, or in a file of any format that ``annotations.labelling`` reads."""
 
     text = forms.CharField(
         label="Utterances",

@@ -15,16 +15,16 @@ from rest_framework.response import Response
 
 from annotations.labelling.collecting import MOST_AT_ONCE, collect
 from annotations.labelling.entity_spans import mend_span
-from annotations.language.errors import LanguageError, Refusal
+from annotations.labelling.item_answers import answer
+from annotations.labelling.label_export import FIELDS, LabelFormat, export_labels
+from annotations.labelling.upload_reading import UploadFormat as UploadFormat
+from annotations.labelling.utterance_deletion import delete_utterance
+from annotations.labelling.utterance_uploads import structure_of
+from annotations.language.texts import LanguageError, Refusal
 from annotations.models import Duty, Entity, Origin, Upload, Utterance
 from annotations.models.corpus import origin_choices
 from annotations.people.allowances import may_take_long
-from annotations.queueing.item_answers import answer
 from annotations.rows.stored_problems import as_json
-from annotations.utterances.label_export import FIELDS, LabelFormat, export_labels
-from annotations.utterances.upload_reading import UploadFormat as UploadFormat
-from annotations.utterances.utterance_deletion import delete_utterance
-from annotations.utterances.utterance_uploads import structure_of
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.corpus.label_rest import LabelSerializer, NewLabel, NewSpan
 from annotations.web.rest.fields import Fields

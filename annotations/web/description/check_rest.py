@@ -11,22 +11,21 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.checking.predicate_check import check_predicate
-from annotations.checking.production_check import (
+from annotations.generation.predicate_check import check_predicate
+from annotations.generation.production_check import (
     ProductionEdit,
     check_production,
     consequences_of_production,
 )
-from annotations.checking.template_check import check_template, samples_of
+from annotations.generation.template_check import check_template, samples_of
 from annotations.generation.world_consequences import WorldConsequences
 from annotations.labelling.entity_spans import anonymizer_of
 from annotations.labelling.form_check import check_label
-from annotations.language.errors import Problem
-from annotations.language.limits import MAX_FORM
-from annotations.lists.paging import LARGEST_INTEGER
+from annotations.language.texts import MAX_FORM, Problem
 from annotations.models import Duty, Scope, SemanticTemplate
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.stored_problems import as_json
+from annotations.showing.paging import LARGEST_INTEGER
 from annotations.web.description.predicate_rest import NewPredicate, PredicateNoun
 from annotations.web.description.production_rest import NewProduction, ProductionNoun
 from annotations.web.description.template_forms import consequences_of_form

@@ -7,15 +7,8 @@ from typing import Any
 from django import forms
 
 from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError, Position
-from annotations.language.limits import require_writable
-from annotations.language.symbols import (
-    HUES,
-    MAX_CLASS_WORDS,
-    MAX_TOKEN,
-    MOST_CLASSES,
-    require_token,
-)
+from annotations.language.forms import HUES, MAX_CLASS_WORDS, MAX_TOKEN, MOST_CLASSES, require_token
+from annotations.language.texts import LanguageError, Position, require_writable
 from annotations.models import EntityClass, World
 from annotations.web.forms import sentence_of
 

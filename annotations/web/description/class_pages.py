@@ -12,8 +12,8 @@ from django.http.response import HttpResponseBase
 from django.shortcuts import redirect, render
 from django.utils.cache import get_conditional_response, patch_cache_control
 
-from annotations.checking.class_uses import count_uses
 from annotations.editing.edits import Overtaken, add
+from annotations.generation.class_uses import count_uses
 from annotations.models import Duty, Entity, EntityClass, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS

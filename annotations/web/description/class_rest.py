@@ -11,8 +11,8 @@ from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.editing.class_deletion import delete_class
-from annotations.language.errors import Refusal
-from annotations.language.symbols import HUES, MAX_CLASS_WORDS, MAX_TOKEN
+from annotations.language.forms import HUES, MAX_CLASS_WORDS, MAX_TOKEN
+from annotations.language.texts import Refusal
 from annotations.models import EntityClass
 from annotations.web.description.class_forms import EntityClassForm, initial_values
 from annotations.web.rest.fields import Fields, LineField

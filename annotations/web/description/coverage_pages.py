@@ -11,10 +11,10 @@ from django.views.decorators.cache import never_cache
 
 from annotations.generation.coverage import coverage_of
 from annotations.generation.uncovered import uncovered_of
-from annotations.language.errors import LanguageError
-from annotations.lists.listing import NumberedPages, render_list
+from annotations.language.texts import LanguageError
 from annotations.models import Duty, TaskCategory, World
 from annotations.people.access import WorldRequest, world_view
+from annotations.showing.listing import NumberedPages, render_list
 from annotations.web.forms import choice_field
 
 MOST_BARS = 8

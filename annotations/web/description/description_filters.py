@@ -11,7 +11,6 @@ from django.db.models import Count, Min, Q, QuerySet, TextField
 from django.db.models.functions import Cast
 from django.db.models.lookups import IContains
 
-from annotations.lists.filtering import Choices, PageFilters, Search
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import (
     TemplateStatus,
@@ -21,6 +20,7 @@ from annotations.models.description import (
 from annotations.people.access import WorldRequest
 from annotations.rows.composition import split_entry
 from annotations.rows.from_rows import classes_of
+from annotations.showing.filtering import Choices, PageFilters, Search
 
 
 def template_file_choices(request: WorldRequest) -> Choices:

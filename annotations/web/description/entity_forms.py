@@ -7,11 +7,10 @@ from typing import Any
 from django import forms
 
 from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError, Position
-from annotations.language.limits import MAX_ENTITY, require_writable
-from annotations.language.names import require_entity_name
-from annotations.language.ontology import Additions, additions_to, read_entities
-from annotations.language.ontology import Entity as EntityValue
+from annotations.language.corpus import require_entity_name
+from annotations.language.texts import MAX_ENTITY, LanguageError, Position, require_writable
+from annotations.language.world import Additions, additions_to, read_entities
+from annotations.language.world import Entity as EntityValue
 from annotations.models import Editable, Entity, Ontology, World
 from annotations.rows.from_rows import classes_of, ontology_of
 from annotations.rows.row_kinds import as_text

@@ -12,15 +12,14 @@ from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add, add_many
 from annotations.editing.once_keys import made_before
-from annotations.language.english import say_count
-from annotations.language.errors import Problem
-from annotations.lists.listing import Listing, Sort, render_list
+from annotations.language.texts import Problem, say_count
 from annotations.models import Duty, Entity, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import READ_AND_WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.from_rows import classes_of
 from annotations.rows.occurrences import MOST_SHOWN, occurrences_of
 from annotations.rows.row_kinds import KINDS
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.description.description_filters import EntityFilters
 from annotations.web.description.entity_forms import (
     EntitiesForm,

@@ -8,9 +8,8 @@ from typing import Any
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.errors import Problem, Refusal
-from annotations.language.limits import MAX_ENTITY
-from annotations.language.symbols import MAX_TOKEN
+from annotations.language.forms import MAX_TOKEN
+from annotations.language.texts import MAX_ENTITY, Problem, Refusal
 from annotations.models import Entity
 from annotations.web.description.description_filters import EntityFilters
 from annotations.web.description.entity_forms import EntityForm, initial_values, ontology_in

@@ -12,10 +12,10 @@ from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, add
 from annotations.editing.once_keys import new_key
-from annotations.markdown import rendered
 from annotations.models import Duty, Guidelines, World
 from annotations.models.description import MOST_CHARACTERS_OF_GUIDELINES
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.showing.markdown import rendered
 from annotations.web.editing.merge_pages import merge_page, save_edit
 from annotations.web.forms import posted
 

@@ -10,9 +10,9 @@ from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.editing.edits import add, change
-from annotations.markdown import rendered
 from annotations.models import Duty, Guidelines
 from annotations.models.description import MOST_CHARACTERS_OF_GUIDELINES
+from annotations.showing.markdown import rendered
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.matching import etag_of, require_match
 from annotations.web.rest.permissions import ApiRequest

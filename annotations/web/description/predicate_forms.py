@@ -7,10 +7,9 @@ from typing import Any
 from django import forms
 
 from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError
-from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
-from annotations.language.names import require_predicate
-from annotations.language.predicates import (
+from annotations.language.corpus import require_predicate
+from annotations.language.texts import MAX_GLOSS, MAX_PREDICATE, LanguageError
+from annotations.language.world import (
     Predicate,
     PredicateKind,
     Signature,

@@ -9,14 +9,14 @@ from django.core.exceptions import ValidationError
 from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 
-from annotations.checking.predicate_check import check_predicate
 from annotations.editing.edits import Overtaken, add
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.generation.predicate_check import check_predicate
 from annotations.models import Duty, Predicate, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import predicate_of
 from annotations.rows.row_kinds import KINDS
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.description.description_filters import PredicateFilters
 from annotations.web.description.predicate_forms import PredicateForm, initial_values
 from annotations.web.editing.merge_pages import merge_page, save_edit

@@ -9,8 +9,7 @@ from typing import Any
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.errors import Refusal
-from annotations.language.limits import MAX_GLOSS, MAX_PREDICATE
+from annotations.language.texts import MAX_GLOSS, MAX_PREDICATE, Refusal
 from annotations.models import Predicate
 from annotations.models.description import predicate_kind_choices
 from annotations.web.description.description_filters import PredicateFilters

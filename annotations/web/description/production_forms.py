@@ -6,16 +6,15 @@ from typing import Any
 
 from django import forms
 
-from annotations.checking.production_check import (
+from annotations.editing.once_keys import new_key
+from annotations.generation.production_check import (
     EXPANSION_FIELD,
     CheckedProduction,
     ProductionEdit,
     check_production,
 )
-from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError, Problem
-from annotations.language.limits import MAX_NONTERMINAL, MAX_PATTERN
-from annotations.language.names import require_nonterminal
+from annotations.language.corpus import require_nonterminal
+from annotations.language.texts import MAX_NONTERMINAL, MAX_PATTERN, LanguageError, Problem
 from annotations.models import Editable, Production, TaskCategory, World
 from annotations.rows.composition import own_category, split_entry
 from annotations.web.forms import choice_field, sentence_of

@@ -9,20 +9,20 @@ from django.http import Http404, HttpResponse, JsonResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.checking.production_check import (
+from annotations.editing.edits import Overtaken, add
+from annotations.generation.production_check import (
     ProductionEdit,
     assist_production,
     check_production,
     consequences_of_production,
 )
-from annotations.editing.edits import Overtaken, add
-from annotations.language.limits import MAX_PATTERN
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.language.texts import MAX_PATTERN
 from annotations.models import Duty, Production, SemanticTemplate, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.description.description_filters import ProductionFilters
 from annotations.web.description.entity_pages import tell_saved
 from annotations.web.description.production_forms import (

@@ -8,8 +8,7 @@ from typing import Any
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.errors import Problem
-from annotations.language.limits import MAX_NONTERMINAL, MAX_PATTERN
+from annotations.language.texts import MAX_NONTERMINAL, MAX_PATTERN, Problem
 from annotations.models import Production, TaskCategory
 from annotations.web.description.description_filters import ProductionFilters
 from annotations.web.description.production_forms import (

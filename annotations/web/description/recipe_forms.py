@@ -6,10 +6,10 @@ from typing import Any
 
 from django import forms
 
-from annotations.checking.recipe_check import BookRow, CheckedRow, RowModel, check_row
 from annotations.editing.once_keys import new_key
-from annotations.language.errors import LanguageError, Problem
-from annotations.language.recipes import MAX_ROW, RecipeBook, read_book, shipped_books
+from annotations.generation.recipe_check import BookRow, CheckedRow, RowModel, check_row
+from annotations.language.plans import MAX_ROW, RecipeBook, read_book, shipped_books
+from annotations.language.texts import LanguageError, Problem
 from annotations.models import Primitive, World
 
 MOST_OF_A_BOOK = 100_000  # characters of all its primitives, or recipes

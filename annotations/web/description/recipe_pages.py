@@ -10,21 +10,21 @@ from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.checking.recipe_check import (
+from annotations.editing.edits import Overtaken, add
+from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
+from annotations.generation.recipe_check import (
     BookRow,
     CheckedRow,
     RowModel,
     problems_by_row,
     try_row,
 )
-from annotations.editing.edits import Overtaken, add
-from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
-from annotations.language.errors import Problem, Refusal
-from annotations.language.recipes import default_book, read_primitive, read_recipe, shipped_books
-from annotations.lists.paging import number_in
+from annotations.language.plans import default_book, read_primitive, read_recipe, shipped_books
+from annotations.language.texts import Problem, Refusal
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
+from annotations.showing.paging import number_in
 from annotations.web.description.recipe_forms import BookRowForm, RecipeBookForm, initial_values
 from annotations.web.editing.merge_pages import merge_page, save_edit
 from annotations.web.editing.undo import say_with_undo

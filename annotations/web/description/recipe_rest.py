@@ -12,11 +12,11 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.checking.recipe_check import FIELD, RowModel, try_row
 from annotations.editing.recipe_books import replace_book, shipped_book_of
 from annotations.editing.recipe_deletion import delete_primitive
-from annotations.language.errors import Problem
-from annotations.language.recipes import MAX_ROW, RecipeBook, shipped_books
+from annotations.generation.recipe_check import FIELD, RowModel, try_row
+from annotations.language.plans import MAX_ROW, RecipeBook, shipped_books
+from annotations.language.texts import Problem
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of

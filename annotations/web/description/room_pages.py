@@ -10,8 +10,8 @@ from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.editing.edits import Overtaken, change_many
-from annotations.language.english import say_count
-from annotations.language.ontology import guess_room
+from annotations.language.texts import say_count
+from annotations.language.world import guess_room
 from annotations.models import Duty, Entity, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.forms import posted

@@ -7,15 +7,15 @@ from typing import Any
 
 from django import forms
 
-from annotations.checking.template_check import CheckedTemplate, check_template
 from annotations.editing.once_keys import new_key
+from annotations.generation.template_check import CheckedTemplate, check_template
 from annotations.generation.world_consequences import (
     TemplateChange,
     WorldConsequences,
     consequences,
 )
 from annotations.language.forms import plain_marks
-from annotations.language.limits import MAX_FORM, MAX_PATTERN
+from annotations.language.texts import MAX_FORM, MAX_PATTERN
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.forms import row_field

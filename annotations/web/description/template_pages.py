@@ -17,27 +17,9 @@ from django.utils.cache import patch_cache_control
 from django.utils.html import format_html, format_html_join
 from django.views.decorators.http import condition
 
-from annotations.checking.assistance import assist, completion_tag, completions_of
-from annotations.checking.template_check import (
-    CheckedTemplate,
-    check_template,
-    recall_check,
-    samples_of,
-)
 from annotations.editing.edits import Overtaken, add
-from annotations.form_presentation import form_of
-from annotations.generation.uncovered import next_uncovered
-from annotations.generation.world_consequences import WorldConsequences, consequences
-from annotations.language.english import say_count
-from annotations.language.forms import head_predicate
-from annotations.language.symbols import places_in_form, places_in_pattern
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
-from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
-from annotations.models.description import ProblemSubject, TemplateStatus
-from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
-from annotations.rows.row_kinds import KINDS
-from annotations.suggesting import (
+from annotations.generation.assistance import assist, completion_tag, completions_of
+from annotations.generation.suggesting import (
     MOST_COMMAND,
     commands_of,
     duplicate_of,
@@ -45,6 +27,23 @@ from annotations.suggesting import (
     suggest_nearest,
     suggest_pattern,
 )
+from annotations.generation.template_check import (
+    CheckedTemplate,
+    check_template,
+    recall_check,
+    samples_of,
+)
+from annotations.generation.uncovered import next_uncovered
+from annotations.generation.world_consequences import WorldConsequences, consequences
+from annotations.language.forms import head_predicate, places_in_form, places_in_pattern
+from annotations.language.texts import say_count
+from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
+from annotations.models.description import ProblemSubject, TemplateStatus
+from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
+from annotations.rows.row_kinds import KINDS
+from annotations.showing.form_presentation import form_of
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.description.description_filters import TemplateFilters
 from annotations.web.description.template_forms import (
     TemplateForm,

@@ -8,15 +8,15 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
-from annotations.checking.template_check import check_template
 from annotations.editing.edits import Overtaken, change, delete
 from annotations.generation.conflicts import conflicts_of
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.generation.suggesting import moved_form
+from annotations.generation.template_check import check_template
 from annotations.models import Duty, SemanticTemplate, TaskCategory, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
-from annotations.suggesting import moved_form
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 from annotations.web.editing.undo import say_deleted
 

@@ -9,8 +9,7 @@ import django_filters
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.errors import Refusal
-from annotations.language.limits import MAX_FORM, MAX_PATTERN
+from annotations.language.texts import MAX_FORM, MAX_PATTERN, Refusal
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.description.description_filters import TemplateFilters, with_counts

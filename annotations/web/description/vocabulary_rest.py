@@ -9,7 +9,7 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 
-from annotations.exporting.vocabulary_export import (
+from annotations.exchange.vocabulary_export import (
     PhraseKind,
     VocabularyFormat,
     VocabularyPart,

@@ -11,7 +11,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.http import require_http_methods
 
-from annotations.commenting import (
+from annotations.editing.commenting import (
     SUBJECTS,
     EditedElsewhere,
     add_comment,
@@ -21,10 +21,10 @@ from annotations.commenting import (
     restore_comment,
     versions_of,
 )
-from annotations.lists.paging import number_in
 from annotations.models import Comment, Duty, Notice, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.rows.row_kinds import KINDS
+from annotations.showing.paging import number_in
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY, CommentEditForm, CommentForm
 from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted

@@ -13,14 +13,14 @@ from rest_framework.decorators import action
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.response import Response
 
-from annotations.commenting import (
+from annotations.editing.commenting import (
     SUBJECTS,
     add_comment,
     change_comment,
     delete_comment,
     restore_comment,
 )
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Comment, User
 from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY

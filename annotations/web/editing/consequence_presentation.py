@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from annotations.generation.world_consequences import WorldConsequences
-from annotations.language.english import say_count
+from annotations.language.texts import say_count
 
 MOST_SHOWN = 8
 

@@ -7,12 +7,12 @@ from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.checking.deletion_check import check_deletion
 from annotations.editing.edits import Overtaken, delete
-from annotations.language.errors import Refusal
-from annotations.lists.paging import number_in
+from annotations.generation.deletion_check import check_deletion
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
+from annotations.showing.paging import number_in
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.kinds_of_rows import DELETING, kind_named
 from annotations.web.editing.undo import say_deleted

@@ -17,8 +17,7 @@ from annotations.editing.drafts import (
     read_draft,
     save_draft,
 )
-from annotations.language.errors import Refusal
-from annotations.lists.paging import number_in
+from annotations.language.texts import Refusal
 from annotations.models import Draft, Duty, World
 from annotations.models.editing import NEW
 from annotations.people.access import (
@@ -28,6 +27,7 @@ from annotations.people.access import (
     WorldRequest,
     world_view,
 )
+from annotations.showing.paging import number_in
 from annotations.web.editing.kinds_of_rows import kind_named
 from annotations.web.sent_texts import sent_texts_of
 

@@ -11,10 +11,10 @@ from django.urls import reverse
 from annotations.editing.edits import restore
 from annotations.editing.row_versions import history_of_row
 from annotations.labelling.label_answers import NoLongerYours
-from annotations.lists.paging import number_in
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, demand, world_view
 from annotations.rows.row_kinds import EditableKind
+from annotations.showing.paging import number_in
 from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
 
 DELETED_SHOWN = 50

@@ -13,10 +13,10 @@ from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.editing.edits import restore
-from annotations.language.limits import MAX_ENTITY
+from annotations.editing.rename_plans import PLANS
+from annotations.editing.world_rename import rename
+from annotations.language.texts import MAX_ENTITY
 from annotations.models import Duty, SemanticTemplate
-from annotations.renaming.rename_plans import PLANS
-from annotations.renaming.world_rename import rename
 from annotations.rows.history import DELETED, history_of, what_happened
 from annotations.rows.row_kinds import KINDS, EditableKind
 from annotations.web.editing.kinds_of_rows import RESTORING, kind_named

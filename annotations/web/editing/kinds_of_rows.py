@@ -9,10 +9,10 @@ from django.http import Http404
 
 from annotations.editing.class_deletion import delete_class
 from annotations.editing.recipe_deletion import delete_primitive
+from annotations.labelling.utterance_deletion import delete_utterance
+from annotations.labelling.utterance_deletion import restore as restore_with_answers
 from annotations.models import Editable, EntityClass, Primitive, User, Utterance
 from annotations.rows.row_kinds import KINDS, EditableKind
-from annotations.utterances.utterance_deletion import delete_utterance
-from annotations.utterances.utterance_deletion import restore as restore_with_answers
 
 RESTORING: dict[type[Editable], Callable[[Any, User], Any]] = {
     Utterance: restore_with_answers

@@ -14,10 +14,10 @@ from django.shortcuts import render
 from annotations.editing.drafts import discard_draft
 from annotations.editing.edits import Overtaken, bring_back, change
 from annotations.editing.merged_fields import MergedField, merge
-from annotations.form_presentation import Pieces, compare
 from annotations.models import Editable
 from annotations.people.access import PageRequest
 from annotations.rows.row_kinds import FORM_FIELDS, kind_of
+from annotations.showing.form_presentation import Pieces, compare
 
 Row = TypeVar("Row", bound=Editable)
 

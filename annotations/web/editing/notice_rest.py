@@ -11,7 +11,7 @@ from rest_framework.decorators import action
 from rest_framework.mixins import ListModelMixin
 from rest_framework.response import Response
 
-from annotations.commenting import mark_read
+from annotations.editing.commenting import mark_read
 from annotations.models import Notice
 from annotations.web.editing.comment_rest import CommentSerializer
 from annotations.web.rest.permissions import ApiRequest

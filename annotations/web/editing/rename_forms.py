@@ -6,10 +6,9 @@ from typing import Any
 
 from django import forms
 
-from annotations.language.errors import LanguageError
-from annotations.language.limits import MAX_ENTITY
+from annotations.editing.world_rename import TouchedRows, touched_by
+from annotations.language.texts import MAX_ENTITY, LanguageError
 from annotations.models import Editable, Entity, Primitive, Production
-from annotations.renaming.world_rename import TouchedRows, touched_by
 from annotations.web.forms import choice_field, sentence_of
 
 

@@ -8,10 +8,10 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.editing.edits import Overtaken
+from annotations.editing.rename_plans import PLANS
+from annotations.editing.world_rename import rename
 from annotations.models import Duty, Editable, World
 from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
-from annotations.renaming.rename_plans import PLANS
-from annotations.renaming.world_rename import rename
 from annotations.rows.row_kinds import EditableKind
 from annotations.web.editing.kinds_of_rows import kind_named
 from annotations.web.editing.rename_forms import RenameForm, names_of

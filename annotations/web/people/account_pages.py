@@ -7,12 +7,12 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect
 from django.views.decorators.cache import never_cache
 
-from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import User
 from annotations.people import shown_once
 from annotations.people.access import WRITE, PageRequest, site_view
 from annotations.people.accounts import OwnAccount, password_path, set_open
 from annotations.people.audit_log import note
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.people.people_filters import AccountFilters
 
 SORTS = {"name": Sort("Username", "username"), "joined": Sort("Since", "date_joined")}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from django.http import HttpResponse
 
-from annotations.lists.listing import Listing, Sort, render_list
 from annotations.models import Duty, World
 from annotations.people.access import PageRequest, WorldRequest, site_view, world_view
+from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.people.people_filters import AuditEntryFilters, entries_of
 
 SORTS = {"when": Sort("When", "-id")}

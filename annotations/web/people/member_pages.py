@@ -8,7 +8,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Invitation, User, World
 from annotations.models.worlds import Role
 from annotations.people import shown_once

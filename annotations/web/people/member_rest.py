@@ -12,7 +12,7 @@ from rest_framework import serializers
 from rest_framework.exceptions import NotFound
 from rest_framework.response import Response
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Invitation, Membership, Scope, User
 from annotations.models.worlds import Role, role_choices
 from annotations.people.audit_log import note

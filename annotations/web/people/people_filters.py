@@ -6,9 +6,9 @@ import django_filters
 from django import forms
 from django.db.models import QuerySet
 
-from annotations.lists.filtering import PageFilters, Search
 from annotations.models import AuditEntry
 from annotations.people.access import PageRequest
+from annotations.showing.filtering import PageFilters, Search
 
 
 def entries_of(request: PageRequest) -> QuerySet[AuditEntry]:

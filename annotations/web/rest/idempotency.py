@@ -15,7 +15,7 @@ from rest_framework.exceptions import ValidationError
 from rest_framework.response import Response
 
 from annotations.editing.once_keys import REMEMBERED_SECONDS
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.web.rest.permissions import ApiRequest
 
 HEADER = "Idempotency-Key"

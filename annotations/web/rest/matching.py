@@ -11,7 +11,7 @@ from django.core.serializers.json import DjangoJSONEncoder
 from django.utils.http import parse_etags
 
 from annotations.editing.edits import Overtaken
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Campaign, Editable
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import PreconditionRequired

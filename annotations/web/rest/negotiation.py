@@ -9,7 +9,7 @@ from rest_framework.parsers import BaseParser
 from rest_framework.renderers import BaseRenderer
 from rest_framework.request import Request
 
-from annotations.exporting.split_export import SplitFormat
+from annotations.exchange.split_export import SplitFormat
 
 # Suffix of a file → its type.
 CONTENT_TYPES: dict[str, str] = {

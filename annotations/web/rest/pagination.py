@@ -12,7 +12,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.utils.urls import replace_query_param
 
-from annotations.lists.paging import page_of, read_cursor
+from annotations.showing.paging import page_of, read_cursor
 
 PAGE_SIZE, MOST_ROWS = 100, 1000
 PLACES = ("after", "before")

@@ -14,7 +14,7 @@ from rest_framework import exceptions, serializers
 from rest_framework.response import Response
 
 from annotations.editing.edits import Overtaken
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts import LanguageError, Refusal
 from annotations.rows.clashes import MADE_MEANWHILE, is_clash
 from annotations.rows.stored_problems import as_json
 from annotations.web.not_found import say_missing, where_to_look

@@ -22,7 +22,7 @@ from rest_framework.serializers import BaseSerializer
 from rest_framework.viewsets import ViewSetMixin
 
 from annotations.editing.edits import add, change, delete
-from annotations.language.errors import Problem
+from annotations.language.texts import Problem
 from annotations.models import Duty, Editable, World
 from annotations.rows.stored_problems import as_json
 from annotations.web.rest.idempotency import once, slot_of

@@ -7,9 +7,9 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 from django.http import Http404, HttpResponse, StreamingHttpResponse
 
-from annotations.exporting.generator_export import GeneratorPart, files_of_part
+from annotations.exchange.generator_export import GeneratorPart, files_of_part
+from annotations.exchange.world_export import archive_name, world_archive
 from annotations.models import User, World
-from annotations.world_archive.world_export import archive_name, world_archive
 
 
 def archive_of(world: World, reader: User) -> StreamingHttpResponse:

@@ -10,10 +10,11 @@ from typing import Any
 from django.urls import reverse
 from django.utils.http import urlencode
 
-from annotations.exporting.generator_export import GeneratorPart
-from annotations.exporting.rephrased_export import RephrasedFormat
-from annotations.exporting.split_export import SplitFormat
-from annotations.exporting.vocabulary_export import VocabularyFormat, VocabularyPart
+from annotations.exchange.generator_export import GeneratorPart
+from annotations.exchange.rephrased_export import RephrasedFormat
+from annotations.exchange.split_export import SplitFormat
+from annotations.exchange.vocabulary_export import VocabularyFormat, VocabularyPart
+from annotations.labelling.label_export import LabelFormat
 from annotations.models import (
     Duty,
     Entity,
@@ -26,7 +27,6 @@ from annotations.models import (
     World,
 )
 from annotations.models.description import TemplateStatus
-from annotations.utterances.label_export import LabelFormat
 
 MOST_SPLITS = 8
 

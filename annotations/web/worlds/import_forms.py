@@ -7,11 +7,10 @@ from typing import Any
 from django import forms
 from django.core.files.uploadedfile import SimpleUploadedFile
 
-from annotations.exporting.generator_export import complete
-from annotations.importing.gathered_files import gather
-from annotations.importing.pair_files import Notation
-from annotations.language.decoding import ENCODINGS, UTF8
-from annotations.language.errors import LanguageError
+from annotations.exchange.gathered_files import gather
+from annotations.exchange.generator_export import complete
+from annotations.exchange.pair_files import Notation
+from annotations.language.texts import ENCODINGS, UTF8, LanguageError
 from annotations.models import World
 
 

@@ -8,19 +8,19 @@ from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
-from annotations.generation.generating import GenerationReport, start_generation
-from annotations.generation.language_size import language_size
-from annotations.importing.competition_import import CompetitionReport
-from annotations.importing.import_jobs import (
+from annotations.background.requesting import keep_report
+from annotations.exchange.competition_import import CompetitionReport
+from annotations.exchange.import_jobs import (
     start_competition_import,
     start_generator_import,
     start_pairs_import,
 )
-from annotations.importing.import_reports import ImportReport, PairsReport
-from annotations.jobs.requesting import keep_report
-from annotations.language.errors import LanguageError
+from annotations.exchange.import_reports import ImportReport, PairsReport
+from annotations.generation.generating import GenerationReport, start_generation
+from annotations.generation.language_size import language_size
 from annotations.language.grammar import readable
 from annotations.language.templates import DEFAULT_LIMIT, SampleNote
+from annotations.language.texts import LanguageError
 from annotations.models import Duty, Job, JobKind, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files

@@ -13,18 +13,17 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.exporting.generator_export import GeneratorPart
-from annotations.generation.generating import start_generation
-from annotations.generation.language_size import language_size
-from annotations.importing.import_jobs import (
+from annotations.background.requesting import refusal_in
+from annotations.exchange.generator_export import GeneratorPart
+from annotations.exchange.import_job import start_world_import
+from annotations.exchange.import_jobs import (
     start_competition_import,
     start_generator_import,
     start_pairs_import,
 )
-from annotations.importing.pair_files import Notation
-from annotations.jobs.requesting import refusal_in
-from annotations.language.decoding import ENCODINGS
-from annotations.language.errors import Refusal
+from annotations.exchange.pair_files import Notation
+from annotations.generation.generating import start_generation
+from annotations.generation.language_size import language_size
 from annotations.language.templates import (
     LARGEST_SEED,
     MOST_COUNTED,
@@ -32,9 +31,9 @@ from annotations.language.templates import (
     Balance,
     SampleRequest,
 )
+from annotations.language.texts import ENCODINGS, Refusal
 from annotations.models import Duty, Job, SemanticTemplate
 from annotations.people.allowances import may_take_long, takes_files
-from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import AnyType
@@ -51,7 +50,7 @@ from annotations.web.worlds.import_forms import (
     WorldArchiveForm,
     uploads_of,
 )
-from annotations.world_archive.import_job import start_world_import
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
 
 AnyForm = TypeVar("AnyForm", bound=forms.Form)
 

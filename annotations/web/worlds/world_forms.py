@@ -11,11 +11,11 @@ from django.http import QueryDict
 from django.utils.text import slugify
 
 from annotations.editing.edits import say_who
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS, request_load
 from annotations.models import AuditEntry, Job, User, World
 from annotations.models.worlds import Role
 from annotations.people.audit_log import WHAT
 from annotations.people.members import add_roles
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS, request_load
 
 
 def start_choices() -> list[tuple[str, str]]:

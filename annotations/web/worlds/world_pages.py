@@ -12,7 +12,9 @@ from django.http import HttpResponse, StreamingHttpResponse
 from django.http.response import HttpResponseBase
 from django.shortcuts import redirect, render
 
-from annotations.language.errors import LanguageError
+from annotations.exchange.import_job import start_world_import
+from annotations.exchange.world_deletion import count_below, start_deletion
+from annotations.language.texts import LanguageError
 from annotations.models import Duty, Job, World
 from annotations.people.access import (
     READ_AND_WRITE,
@@ -30,8 +32,6 @@ from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
 from annotations.web.worlds.world_forms import NewWorldForm, WorldEditForm
-from annotations.world_archive.import_job import start_world_import
-from annotations.worlds.world_deletion import count_below, start_deletion
 
 MOST_DIGITS = 19  # of a key that the database takes
 

@@ -11,17 +11,17 @@ from rest_framework import serializers
 from rest_framework.exceptions import PermissionDenied
 from rest_framework.response import Response
 
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
+from annotations.exchange.world_deletion import request_deletion, start_deletion
 from annotations.models import Duty, Job, World
-from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, ForSiteAdmins
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
 from annotations.web.rest.samples import SampleNoteSerializer
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
 from annotations.web.worlds.world_forms import NewWorldForm, WorldForm
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
-from annotations.worlds.world_deletion import request_deletion, start_deletion
 
 
 class WorldSerializer(serializers.ModelSerializer[World]):

@@ -14,13 +14,13 @@ from django.core.management import call_command
 from django.core.management.base import BaseCommand, CommandError
 from django.db import IntegrityError, transaction
 
+from annotations.exchange.starter_world import STARTER_WORLD, load_starter_world
 from annotations.language.corpus import Criterion
 from annotations.models import Split, User, World
 from annotations.people.audit_log import record_command
-from annotations.worlds.starter_world import STARTER_WORLD, load_starter_world
 from gpsr_site.processes import PARSE_SERVER, Supervisor, web_server_commands, worker_command
 from gpsr_site.web.server import require_free_port
-from parser_service.runs.requests.first_runs import request_first_runs
+from parser_service.runs.first_runs import request_first_runs
 
 HEALTH_PATIENCE_SECONDS = 60
 

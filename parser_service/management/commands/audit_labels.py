@@ -8,11 +8,11 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.language.errors import Refusal
-from annotations.language.label_errors import Reason, Suspect
+from annotations.language.corpus import Reason, Suspect
+from annotations.language.texts import Refusal
 from annotations.management.base import ReportingCommand, find_world
-from parser_service.label_audit.audit_job import audit_labels
-from parser_service.label_audit.out_of_fold import AUDITORS
+from parser_service.labelling.audit_job import audit_labels
+from parser_service.labelling.out_of_fold import AUDITORS
 
 
 class Command(ReportingCommand):

@@ -9,9 +9,9 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.background.progress import UNWATCHED
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.management.base import ReportingCommand, find_world
-from parser_service.analyses.plan_comparison import compare_plans
+from parser_service.reviews.plan_comparison import compare_plans
 
 
 class Command(ReportingCommand):

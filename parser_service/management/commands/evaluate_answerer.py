@@ -7,7 +7,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.management.base import ReportingCommand, find_split, find_world
 from parser_service.models import AnswererEvaluation, AnsweringOrder
 from parser_service.models.answering import answering_of

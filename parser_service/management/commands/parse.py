@@ -12,11 +12,11 @@ from typing import Any
 from django.conf import settings
 from django.core.management.base import CommandParser
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.management.base import ReportingCommand, find_world
 from annotations.templatetags.task_plans import call
 from parser_service.parsers.registry import untrained
-from parser_service.runs.training.evaluating import BEAM_WIDTH
+from parser_service.runs.evaluating import BEAM_WIDTH
 from parser_service.serving.answerer import Answerer
 from parser_service.serving.line_files import answer_file, require_utf8
 from parser_service.serving.lines import LineAnswer

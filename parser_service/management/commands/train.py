@@ -19,9 +19,8 @@ from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.registry import PARSERS
 from parser_service.results.run_figures import report_run, report_seeds, with_reach
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.train_run import train
+from parser_service.runs import lifecycle, run_requests
+from parser_service.runs.train_run import train
 
 LOOK_EVERY = 1.0
 

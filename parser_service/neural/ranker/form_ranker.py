@@ -10,9 +10,9 @@ from math import inf, log
 from pathlib import Path
 from typing import Self
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import CLASS_TOKEN
-from annotations.language.requests import is_qualified
+from annotations.language.plans import is_qualified
+from annotations.language.texts import Refusal
 from parser_service.neural.device import threads
 from parser_service.neural.ranker.calibration import TERMS, DecisionRule, Scores
 from parser_service.neural.ranker.fitting import Fitting, make_model

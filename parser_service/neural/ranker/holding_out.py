@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import Application, read_form
+from annotations.language.texts import LanguageError
 from parser_service.parsers.conditions import GENERATED
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.spreading import spread

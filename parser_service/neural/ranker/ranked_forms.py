@@ -8,20 +8,14 @@ from dataclasses import asdict, dataclass, replace
 from random import Random
 from typing import Any, Self
 
+from annotations.language.corpus import Rewording
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses
 from annotations.language.grounding import Anonymizer
-from annotations.language.ontology import Ontology
-from annotations.language.predicates import (
-    Predicate,
-    gloss,
-    infer_signatures,
-    pattern_of_name,
-)
-from annotations.language.requests import other_requests
-from annotations.language.rewording import Rewording
-from annotations.language.symbols import DEFAULT_CLASSES, EntityClasses
+from annotations.language.plans import other_requests
+from annotations.language.world import Ontology, Predicate, gloss, infer_signatures, pattern_of_name
 from parser_service.parsers.conditions import GENERATED
+from parser_service.parsers.generation import generate_candidates
 from parser_service.parsers.interface import REFUSAL, TRAINING, Check, Knowledge, Pair, keep_going
-from parser_service.parsers.new_forms.generation import generate_candidates
 from parser_service.parsers.spreading import spread
 from parser_service.parsers.written_forms import read_or_none
 

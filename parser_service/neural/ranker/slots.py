@@ -11,11 +11,11 @@ from re import Match
 import torch
 from torch import Tensor
 
-from annotations.language.english import ANY_OBJECT, OPEN_CATEGORIES
 from annotations.language.forms import CLASS_TOKEN, Constant, walk
 from annotations.language.grounding import QUESTION_WORD, Anonymizer
-from annotations.language.ontology import Ontology
-from annotations.language.requests import says_number
+from annotations.language.plans import says_number
+from annotations.language.texts import ANY_OBJECT, OPEN_CATEGORIES
+from annotations.language.world import Ontology
 from parser_service.parsers.remembering import remembered
 from parser_service.parsers.written_forms import read_or_none
 

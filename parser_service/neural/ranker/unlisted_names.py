@@ -12,8 +12,8 @@ from collections.abc import Collection, Mapping, Sequence
 
 import torch
 
-from annotations.language.ontology import Ontology
-from annotations.language.paraphrases import MisspeltNames
+from annotations.language.corpus import MisspeltNames
+from annotations.language.world import Ontology
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.parsers.interface import Check, keep_going
 

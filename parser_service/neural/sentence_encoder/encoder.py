@@ -16,7 +16,7 @@ from tokenizers import Tokenizer
 from torch import Tensor, nn
 from torch.nn.functional import normalize
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.neural.device import denormals_flushed
 from parser_service.neural.pretrained import Pretrained
 from parser_service.neural.sentence_encoder.bert import Bert, BertConfig, is_bert, share_dropout

@@ -11,7 +11,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.neural.device import threads
 from parser_service.neural.seq2seq.seq2seq_parser import Seq2Seq
 from parser_service.neural.seq2seq.vocabulary import Vocabulary

@@ -10,7 +10,7 @@ from typing import Any, Self
 import torch
 from torch import Tensor
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.neural.device import full_fp32, processor, threads
 from parser_service.neural.seq2seq.batches import NumberedPair, contexts, sources
 from parser_service.neural.seq2seq.beam import Hypothesis, search

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from annotations.language.forms import UNKNOWN, Application, Form, Lambda, Variable
-from annotations.language.predicates import ArgumentKind, admits, argument_kind
+from annotations.language.world import ArgumentKind, admits, argument_kind
 from parser_service.neural.t5.rules import NESTED, NEVER, Costs, Kinds, Rules, own_length
 from parser_service.neural.t5.spelling import INSIDE, spell
-from parser_service.parsers.new_forms.short import CLOSE
 from parser_service.parsers.remembering import remembered
+from parser_service.parsers.short import CLOSE
 
 REMEMBERED = 2_000  # states whose continuations are kept, of some kilobytes each
 

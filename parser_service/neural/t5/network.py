@@ -15,8 +15,7 @@ from tokenizers import Tokenizer
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
-from annotations.language.errors import Refusal
-from annotations.language.limits import MAX_INDEXED_BYTES
+from annotations.language.texts import MAX_INDEXED_BYTES, Refusal
 from parser_service.neural.pretrained import PretrainedWriter
 from parser_service.neural.t5.spelling import words_of
 from parser_service.neural.weights import WEIGHTS, load_tensors

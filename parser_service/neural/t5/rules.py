@@ -22,8 +22,8 @@ from annotations.language.forms import (
     depth,
     walk,
 )
-from annotations.language.limits import MAX_INDEXED_BYTES, MAX_NESTING
-from annotations.language.predicates import (
+from annotations.language.texts import MAX_INDEXED_BYTES, MAX_NESTING
+from annotations.language.world import (
     ArgumentKind,
     Predicate,
     admits,

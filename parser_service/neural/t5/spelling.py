@@ -11,15 +11,9 @@ import re
 from collections.abc import Sequence
 from urllib.parse import unquote
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import Form, read_form
-from parser_service.parsers.new_forms.short import (
-    CLOSE,
-    is_leaf_application,
-    lengthen,
-    name_of,
-    shorten,
-)
+from annotations.language.texts import LanguageError
+from parser_service.parsers.short import CLOSE, is_leaf_application, lengthen, name_of, shorten
 
 INSIDE = ":"  # begins an argument of a leaf application, and ends its predicate
 _WORD = re.compile(r"[^\W_]+")

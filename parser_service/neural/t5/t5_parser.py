@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Self
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import to_corpus
+from annotations.language.texts import Refusal
 from parser_service.neural.device import full_fp32, processor, threads
 from parser_service.neural.pretrained import load_encoder_decoder
 from parser_service.neural.t5.automaton import Automaton

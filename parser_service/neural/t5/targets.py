@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, Self
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import Form, read_form
+from annotations.language.texts import Refusal
 from parser_service.neural.t5.automaton import Automaton
 from parser_service.neural.t5.network import EncoderDecoder
 from parser_service.neural.t5.rules import Rules
 from parser_service.neural.t5.spelling import spell, try_to_spell
+from parser_service.parsers.generation import generate_candidates
 from parser_service.parsers.interface import TRAINING, Check, Knowledge, Pair
-from parser_service.parsers.new_forms.generation import generate_candidates
 
 SHORTEST_ATOM = 2  # bytes of an atom in corpus notation, on average over any form
 

@@ -11,7 +11,7 @@ import h5py
 import torch
 from torch import Tensor
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.neural.device import processor
 from parser_service.neural.word_vectors.elmo_layers import (
     CHARACTERS,

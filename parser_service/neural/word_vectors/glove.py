@@ -10,7 +10,7 @@ from pathlib import Path
 
 from torch import Tensor, tensor
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 _GZIP = b"\x1f\x8b"
 

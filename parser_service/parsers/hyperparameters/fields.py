@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeAlias, TypeVar
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 
 C = TypeVar("C")
 Value: TypeAlias = "bool | int | float | str"

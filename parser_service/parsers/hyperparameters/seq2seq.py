@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from parser_service.parsers.hyperparameters.fields import hyperparameter, validate
 
 

@@ -28,7 +28,7 @@ from parser_service.parsers.llm.protocol import (
     read_answer,
     read_models,
 )
-from parser_service.parsers.llm.server_address import ModelServer, problem_of
+from parser_service.parsers.server_address import ModelServer, problem_of
 
 logger = logging.getLogger(__name__)
 

@@ -10,7 +10,7 @@ from json import JSONDecoder
 from typing import Any, Self
 
 from annotations.language.forms import Form, canonical_text
-from annotations.language.predicates import Predicate, gloss, print_signatures
+from annotations.language.world import Predicate, gloss, print_signatures
 from parser_service.parsers.llm.protocol import Message
 from parser_service.parsers.written_forms import actions_of, read_or_none, written_actions
 

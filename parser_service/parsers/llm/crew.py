@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 from parser_service.parsers.interface import Check
 from parser_service.parsers.llm.exchange import Abandoned, Exchange, Reply
-from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.parsers.server_address import ModelServer
 
 LOOK_EVERY = 0.1  # seconds between two looks at whether to stop
 T = TypeVar("T")

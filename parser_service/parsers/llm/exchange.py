@@ -16,8 +16,8 @@ from http.client import HTTPConnection, HTTPException, HTTPResponse
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
-from annotations.language.errors import Refusal
-from parser_service.parsers.llm.server_address import ModelServer, problem_of, refusal_of
+from annotations.language.texts import Refusal
+from parser_service.parsers.server_address import ModelServer, problem_of, refusal_of
 
 MOST_BYTES = 1024 * 1024  # of a reply; an answer has a few thousand
 PIECE = 64 * 1024

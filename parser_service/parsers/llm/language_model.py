@@ -10,9 +10,9 @@ from typing import Self
 
 import numpy as np
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import UNKNOWN as UNKNOWN_FORM
 from annotations.language.forms import Form, Unknown, canonical_text
+from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import (
     TRAINING,
@@ -36,8 +36,8 @@ from parser_service.parsers.llm.chat_messages import (
 from parser_service.parsers.llm.config import LISTED, LanguageModelConfig
 from parser_service.parsers.llm.mending import Mended, Mender, tokens_in, without_loose
 from parser_service.parsers.llm.protocol import MOST_NAME, Question
-from parser_service.parsers.llm.server_address import problem_of, server
 from parser_service.parsers.nearest_pairs import PairKeeper, WordOverlap
+from parser_service.parsers.server_address import problem_of, server
 from parser_service.parsers.written_forms import (
     canonical,
     in_order,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+from annotations.language.corpus import MisspeltNames
 from annotations.language.forms import (
     UNKNOWN,
     Application,
@@ -21,10 +22,9 @@ from annotations.language.forms import (
     walk,
 )
 from annotations.language.grounding import Anonymizer
-from annotations.language.ontology import Ontology
-from annotations.language.paraphrases import MisspeltNames
-from annotations.language.predicates import (
+from annotations.language.world import (
     ArgumentKind,
+    Ontology,
     Predicate,
     PredicateKind,
     Signature,

@@ -10,11 +10,10 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.errors import LanguageError
-from annotations.language.limits import MAX_FORM, MAX_PATTERN
+from annotations.generation.suggesting import MOST_COMMAND
+from annotations.language.texts import MAX_FORM, MAX_PATTERN, LanguageError
 from annotations.models import Duty, Scope, TaskCategory, Utterance
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.suggesting import MOST_COMMAND
 from annotations.web.description.template_rest import category_called
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once

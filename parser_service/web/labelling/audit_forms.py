@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from django import forms
 
-from annotations.language.label_errors import LEAST_FOLDS, MOST_FOLDS
-from parser_service.label_audit.out_of_fold import AUDITORS
+from annotations.language.corpus import LEAST_FOLDS, MOST_FOLDS
+from parser_service.labelling.out_of_fold import AUDITORS
 from parser_service.parsers.registry import entry
 
 MOST_QUEUED = 1_000

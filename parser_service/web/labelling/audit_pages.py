@@ -12,12 +12,11 @@ from django.urls import reverse
 from django.views.decorators.cache import never_cache
 from django_htmx.http import reselect, reswap, retarget
 
-from annotations.label_audit.label_decisions import DecidedMeanwhile, decide, take_back
 from annotations.labelling.form_check import check_label
+from annotations.labelling.giving import NotForThem, kinds_for
 from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
-from annotations.language.errors import Refusal
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.labelling.label_decisions import DecidedMeanwhile, decide, take_back
+from annotations.language.texts import Refusal
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -28,11 +27,12 @@ from annotations.models import (
     World,
 )
 from annotations.people.access import WRITE, WorldRequest, world_view
-from annotations.queueing.giving import NotForThem, kinds_for
 from annotations.rows.occurrences import examples_of_pair
-from annotations.web.queueing.queueing_filters import AuditFindingFilters
-from parser_service.label_audit.audit_job import request_audit
-from parser_service.label_audit.precision import precision_of
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
+from annotations.web.labelling.queueing_filters import AuditFindingFilters
+from parser_service.labelling.audit_job import request_audit
+from parser_service.labelling.precision import precision_of
 from parser_service.web.labelling.audit_forms import AuditForm
 
 SORTS = {"rank": Sort("No.", "rank", is_number=True), "text": Sort("Utterance", "text")}

@@ -9,17 +9,17 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.label_errors import LEAST_FOLDS, MOST_FOLDS
+from annotations.language.corpus import LEAST_FOLDS, MOST_FOLDS
 from annotations.models import AuditFinding, Duty, JobKind
-from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
-from parser_service.label_audit.audit_job import request_audit
-from parser_service.label_audit.out_of_fold import AUDITORS
-from parser_service.label_audit.precision import precision_of
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from parser_service.labelling.audit_job import request_audit
+from parser_service.labelling.out_of_fold import AUDITORS
+from parser_service.labelling.precision import precision_of
 from parser_service.web.labelling.audit_forms import MOST_QUEUED, AuditForm
 
 

@@ -15,20 +15,19 @@ from django.views.decorators.cache import never_cache
 from annotations.labelling.collecting import collect
 from annotations.labelling.entity_spans import mend_span
 from annotations.labelling.form_check import check_label
-from annotations.labelling.label_queue import last_labels, next_utterance, progress_of
-from annotations.language.errors import Refusal
-from annotations.language.text import find_words
-from annotations.lists.listing import Listing
-from annotations.lists.paging import number_in
-from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
-from annotations.people.access import WRITE, WorldRequest, world_view
-from annotations.queueing.giving import ItemFilter, next_item, skipped_items
-from annotations.queueing.item_answers import (
+from annotations.labelling.giving import ItemFilter, next_item, skipped_items
+from annotations.labelling.item_answers import (
     answer,
     answer_waiting,
     assignment_in,
     take_answer_back,
 )
+from annotations.labelling.label_queue import last_labels, next_utterance, progress_of
+from annotations.language.texts import Refusal, find_words
+from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
+from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.showing.listing import Listing
+from annotations.showing.paging import number_in
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.corpus.utterance_pages import SORTS
 from parser_service.labelling.label_candidates import candidates_for

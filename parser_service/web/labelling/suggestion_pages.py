@@ -5,9 +5,9 @@ from __future__ import annotations
 from django.http import HttpResponse
 from django.shortcuts import render
 
+from annotations.generation.suggesting import MOST_COMMAND
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
-from annotations.suggesting import MOST_COMMAND
 from annotations.web.description.template_forms import TemplateForm
 from parser_service.labelling.pattern_suggestions import suggest_with_parsers
 

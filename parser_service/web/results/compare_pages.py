@@ -9,22 +9,22 @@ from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.language.corpus import Criterion
-from annotations.lists.listing import FilteredList
 from annotations.models import Duty, World
 from annotations.people.access import PageRequest, WorldRequest, world_view
-from parser_service.analyses.state import analysis_of
+from annotations.showing.listing import FilteredList
 from parser_service.models import Prediction, TrainingRun
 from parser_service.models.evaluations import ShownScore
+from parser_service.results.addresses import Addresses
+from parser_service.results.breakdown import accuracies_of, break_down, break_down_by_slices
+from parser_service.results.compared import compare_on
+from parser_service.results.comparison_tables import confusion_table, pair_rows, win_matrix
 from parser_service.results.measures import OF_EXAMPLES, Measure
+from parser_service.results.prediction_filters import PredictionFilters
 from parser_service.results.result_choices import default_part
-from parser_service.slices.addresses import Addresses
-from parser_service.slices.breakdown import accuracies_of, break_down, break_down_by_slices
-from parser_service.slices.compared import compare_on
-from parser_service.slices.comparison_tables import confusion_table, pair_rows, win_matrix
-from parser_service.slices.prediction_filters import PredictionFilters
-from parser_service.slices.run_choice import LETTERS, PARTS, RunChoice, choose_runs, named_keys
-from parser_service.slices.selecting import slice_query
-from parser_service.slices.slot_confusions import slot_rows
+from parser_service.results.run_choice import LETTERS, PARTS, RunChoice, choose_runs, named_keys
+from parser_service.results.selecting import slice_query
+from parser_service.results.slot_confusions import slot_rows
+from parser_service.reviews.state import analysis_of
 
 OF_THE_PAGE = ("part", "versus", "versus_outcome", "slot")
 

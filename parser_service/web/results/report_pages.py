@@ -14,12 +14,12 @@ from annotations.models import Duty, World
 from annotations.people.access import WorldRequest, world_view
 from annotations.people.allowances import may_take_long
 from parser_service.models import TrainingRun
-from parser_service.reports.comparison_report import comparison_report
-from parser_service.reports.run_report import part_of
-from parser_service.reports.run_report import run_report as write_run_report
+from parser_service.results.compared import compare_on
 from parser_service.results.result_choices import default_part
-from parser_service.slices.compared import compare_on
-from parser_service.slices.run_choice import PARTS, choose_runs, named_keys
+from parser_service.results.run_choice import PARTS, choose_runs, named_keys
+from parser_service.reviews.comparison_report import comparison_report
+from parser_service.reviews.run_report import part_of
+from parser_service.reviews.run_report import run_report as write_run_report
 from parser_service.web.results.compare_pages import ComparedFilters, measure_of
 
 

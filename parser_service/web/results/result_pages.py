@@ -10,8 +10,8 @@ from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
-from annotations.exporting.split_export import formula_safe
-from annotations.language.errors import Refusal
+from annotations.exchange.split_export import formula_safe
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.results.answerer_rows import answerer_tables

@@ -14,13 +14,13 @@ from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.language.corpus import KNOWN, harmonic_mean
-from annotations.lists.filtering import Key
 from annotations.models import Duty, Split
-from annotations.web.background.job_rest import JobSerializer, address_of_job
+from annotations.showing.filtering import Key
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.measures import Measure, interval_of, is_known

@@ -10,12 +10,12 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils.http import url_has_allowed_host_and_scheme
 
-from annotations.language.errors import LanguageError
+from annotations.language.texts import LanguageError
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from parser_service.models import Slice
-from parser_service.slices.saving import delete_slice, rename_slice, save_slice
-from parser_service.slices.selecting import describe_query
+from parser_service.results.saving import delete_slice, rename_slice, save_slice
+from parser_service.results.selecting import describe_query
 
 DELETED = "deleted_slice"  # in the session, until the page has offered to restore it
 

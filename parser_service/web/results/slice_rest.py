@@ -16,7 +16,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet
 from parser_service.models import Slice
 from parser_service.models.reviews import LONGEST_SLICE_NAME
-from parser_service.slices.saving import delete_slice, rename_slice, save_slice
+from parser_service.results.saving import delete_slice, rename_slice, save_slice
 
 LONGEST_QUERY = 5_000
 

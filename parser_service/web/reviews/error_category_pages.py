@@ -6,10 +6,10 @@ from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
-from annotations.language.errors import Refusal
-from annotations.lists.paging import number_in
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
+from annotations.showing.paging import number_in
 from annotations.web.forms import posted
 from parser_service.models import ErrorCategory, Review
 from parser_service.reviews.category_counts import agreement_of_reviewers, count_categories

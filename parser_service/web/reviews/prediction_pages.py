@@ -5,13 +5,13 @@ from __future__ import annotations
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
-from annotations.lists.listing import Listing, Sort
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, PageRequest, WorldRequest, world_view
-from annotations.web.queueing.sending_pages import go_back, send
+from annotations.showing.listing import Listing, Sort
+from annotations.web.labelling.sending_pages import go_back, send
 from parser_service.models import TrainingRun
-from parser_service.slices.prediction_filters import PredictionFilters
-from parser_service.slices.selecting import slice_query
+from parser_service.results.prediction_filters import PredictionFilters
+from parser_service.results.selecting import slice_query
 from parser_service.web.page_of_run import head_of
 
 SORTS = {

@@ -12,13 +12,13 @@ from drf_spectacular.utils import extend_schema, extend_schema_field
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.lists.filtering import Key
-from annotations.web.queueing.sending_rest import Sending, SentSerializer, WhatToLookAt
+from annotations.showing.filtering import Key
+from annotations.web.labelling.sending_rest import Sending, SentSerializer, WhatToLookAt
 from annotations.web.rest.fields import FiniteField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from parser_service.models import Prediction
-from parser_service.slices.prediction_filters import PredictionFilters
+from parser_service.results.prediction_filters import PredictionFilters
 from parser_service.web.runs.run_rest import OfRun
 
 

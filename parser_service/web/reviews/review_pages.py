@@ -16,11 +16,11 @@ from django.utils.http import urlencode
 from django.views.decorators.cache import never_cache
 
 from annotations.language.corpus import Part
-from annotations.language.errors import Refusal
-from annotations.lists.listing import Listing, Sort, render_list
-from annotations.lists.paging import number_in
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Example, World
 from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.paging import number_in
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.registry import title_of
 from parser_service.reviews.cases import read_case

@@ -12,10 +12,9 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.errors import Refusal
-from annotations.language.limits import MAX_FORM
-from annotations.lists.filtering import Key
+from annotations.language.texts import MAX_FORM, Refusal
 from annotations.models import Duty, Example, User
+from annotations.showing.filtering import Key
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowRoute, RowsViewSet

@@ -9,8 +9,7 @@ from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
-from annotations.language.english import say_count
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal, say_count
 from annotations.models import Duty, Split, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.models import TrainingRun
@@ -24,8 +23,8 @@ from parser_service.parsers.conditions import (
 from parser_service.results.learning_curves import LearningCurves, curves_url, learning_curves
 from parser_service.results.measures import Measure
 from parser_service.results.result_choices import PARTS, default_part, scored_splits
-from parser_service.runs.requests.learning_curve import MOST_SEEDS
-from parser_service.runs.requests.starting import start_learning_curve
+from parser_service.runs.learning_curve import MOST_SEEDS
+from parser_service.runs.starting import start_learning_curve
 
 
 @dataclass(frozen=True, slots=True)

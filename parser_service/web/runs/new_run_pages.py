@@ -15,11 +15,11 @@ from django.utils.http import urlencode
 from django.views.decorators.cache import never_cache
 
 from annotations.language.corpus import KNOWN, Part
-from annotations.language.errors import Refusal
-from annotations.lists.paging import number_in
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Split, World
 from annotations.models.background import Status
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.showing.paging import number_in
 from annotations.web.forms import posted
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
@@ -28,7 +28,7 @@ from parser_service.parsers.pretrained_files import Gap
 from parser_service.parsers.recommendation import Expectation, expectation_of, recommend
 from parser_service.parsers.registry import PARSERS, RegistryEntry, config_fields
 from parser_service.results.accuracy_tables import seeds_url
-from parser_service.runs.requests.recommended import (
+from parser_service.runs.recommended import (
     SplitContents,
     contents_of,
     gaps_of_parsers,
@@ -36,8 +36,8 @@ from parser_service.runs.requests.recommended import (
     recommendation_for,
     usual_split,
 )
-from parser_service.runs.requests.retraining import retrainable
-from parser_service.runs.requests.starting import start_again, start_runs
+from parser_service.runs.retraining import retrainable
+from parser_service.runs.starting import start_again, start_runs
 from parser_service.web.runs.run_forms import GENERAL, PREFIX, RunForm
 
 MOST_RUNS = 200  # the newest that times are taken from

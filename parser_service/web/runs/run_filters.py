@@ -1,4 +1,4 @@
-"""What the list of runs may be filtered by; predictions: ``parser_service.slices``."""
+"""What the list of runs may be filtered by; predictions: ``parser_service.results``."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import django_filters
 from django import forms
 from django.db.models import Q, QuerySet
 
-from annotations.lists.filtering import Choices, PageFilters, Search
-from annotations.lists.paging import number_in
 from annotations.models import Split
 from annotations.people.access import WorldRequest
+from annotations.showing.filtering import Choices, PageFilters, Search
+from annotations.showing.paging import number_in
 from parser_service.models import TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
 from parser_service.parsers.registry import PARSERS

@@ -7,7 +7,7 @@ from typing import Any
 from django import forms
 
 from annotations.language.corpus import Part
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Example, Split, World
 from annotations.web.forms import choice_field, row_field
 from parser_service.parsers.conditions import (
@@ -20,12 +20,7 @@ from parser_service.parsers.conditions import (
 from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.pretrained_files import missing_weights
 from parser_service.parsers.registry import config_fields, entry, make_config
-from parser_service.runs.requests.run_requests import (
-    LARGEST_SEED,
-    LEAST_SHARE,
-    MOST_SEEDS,
-    seeds_from,
-)
+from parser_service.runs.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS, seeds_from
 
 PROTOCOL_LABELS = {
     Protocol.STRICT: "strict: training pairs only",

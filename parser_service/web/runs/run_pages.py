@@ -9,22 +9,22 @@ from django.http import HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
-from annotations.language.errors import Refusal
-from annotations.lists.listing import Listing, Sort
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.models.background import Status
 from annotations.people.access import WRITE, WorldRequest, world_view
-from parser_service.analyses.state import analysis_of
+from annotations.showing.listing import Listing, Sort
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import PARSERS, title_of
-from parser_service.promotions.promoting import is_learned, learned_part
 from parser_service.results.learning_curves import curves_url
 from parser_service.results.run_figures import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.results.table_parts import marked
 from parser_service.reviews.earlier import history_of_errors
+from parser_service.reviews.state import analysis_of
 from parser_service.runs import lifecycle
 from parser_service.runs.curves import CURVES, loss_curves, will_have_curves
-from parser_service.runs.requests.retraining import retrained
+from parser_service.runs.promoting import is_learned, learned_part
+from parser_service.runs.retraining import retrained
 from parser_service.runs.waiting import waiting_of
 from parser_service.web.runs.run_filters import RunFilters
 

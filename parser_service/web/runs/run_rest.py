@@ -12,27 +12,23 @@ from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Scope
-from annotations.web.background.job_rest import JobSerializer
 from annotations.web.rest.fields import Fields, FiniteField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsRoute, RowsViewSet
-from parser_service.analyses.state import analysis_of
+from annotations.web.worlds.job_rest import JobSerializer
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import TRAIN_SOURCES, Protocol
 from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.reviews.state import analysis_of
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
-from parser_service.runs.requests.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
-from parser_service.runs.requests.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
-from parser_service.runs.requests.starting import (
-    start_again,
-    start_learning_curve,
-    start_runs,
-)
+from parser_service.runs.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
+from parser_service.runs.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
+from parser_service.runs.starting import start_again, start_learning_curve, start_runs
 from parser_service.web.runs.run_filters import RunFilters
 from parser_service.web.runs.run_forms import PREFIX, RunForm
 

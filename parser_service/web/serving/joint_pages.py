@@ -11,8 +11,8 @@ from django.urls import reverse
 from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
-from annotations.language.errors import Refusal
-from annotations.language.recipes import MOST_COMMANDS, JointPlan, say_length
+from annotations.language.plans import MOST_COMMANDS, JointPlan, say_length
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view

@@ -10,17 +10,17 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.limits import MAX_ENTITY
-from annotations.language.recipes import METRES, MOST_COMMANDS, Distances
+from annotations.language.plans import METRES, MOST_COMMANDS, Distances
+from annotations.language.texts import MAX_ENTITY
 from annotations.models import Scope
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import WorldRoute
 from parser_service.serving.joint_answers import commands_in, plan_together
-from parser_service.web.robots.tree_query import TreeQuery, tree_answer
 from parser_service.web.serving.parsing_rest import MOST_KEY
 from parser_service.web.serving.plan_fields import JointPlanField, PlanField
+from parser_service.web.serving.tree_query import TreeQuery, tree_answer
 
 MOST_DISTANCES = 10_000
 MOST_OF_UNIT = 20

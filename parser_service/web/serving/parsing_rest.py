@@ -20,16 +20,16 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from annotations.language.errors import Refusal
+from annotations.language.texts import Refusal
 from annotations.models import Duty, Job, Scope, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.web.background.job_rest import JobSerializer, address_of_job
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.rest.streaming import JSON_LINES, JSON_LINES_TYPES, BrokenOff
+from annotations.web.worlds.job_rest import JobSerializer, address_of_job
 from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client

@@ -14,19 +14,19 @@ from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
 from annotations.generation.example_commands import example_commands
-from annotations.language.errors import Refusal
-from annotations.language.recipes import MOST_COMMANDS
-from annotations.lists.paging import number_in
+from annotations.language.plans import MOST_COMMANDS
+from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import ready_templates
+from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
 from parser_service.models import TrainingRun
 from parser_service.parsers.interface import ScoreKind
 from parser_service.parsers.registry import ORACLE
-from parser_service.promotions.promoting import promoted_run
+from parser_service.runs.promoting import promoted_run
 from parser_service.serving.answering import answering_parts
 from parser_service.serving.default_runs import opening_run
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client

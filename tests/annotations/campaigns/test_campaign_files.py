@@ -14,7 +14,7 @@ from annotations.campaigns.campaign_files import (
 )
 from annotations.campaigns.moderation import accept
 from annotations.campaigns.tasks import begin
-from annotations.importing.pair_import import import_pairs
+from annotations.exchange.pair_import import import_pairs
 from annotations.language.corpus import read_triples
 from annotations.models import CampaignPrompt, Paraphrase, Submission
 from tests.launched_campaigns import small_campaign

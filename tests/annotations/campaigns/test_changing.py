@@ -5,7 +5,7 @@ import pytest
 from annotations.campaigns.changing import CampaignChanged, change_campaign
 from annotations.campaigns.model_rewrites import ModelSettings, model_contributor
 from annotations.campaigns.tasks import begin
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import Campaign
 from tests.launched_campaigns import small_campaign
 

@@ -6,10 +6,10 @@ from annotations.campaigns.answering import save_answer
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.tasks import CampaignOver, begin
 from annotations.editing.edits import change
+from annotations.labelling.utterance_deletion import delete_utterance
 from annotations.models import Campaign, Contributor, Paraphrase, Submission, Utterance
 from annotations.models.campaigns import SubmissionStatus
 from annotations.rows.history import history_of
-from annotations.utterances.utterance_deletion import delete_utterance
 from tests.launched_campaigns import small_campaign
 from tests.sample_world import make_paraphrase
 

@@ -13,7 +13,10 @@ from django.test.utils import CaptureQueriesContext
 
 from annotations import background
 from annotations.background import Stopped
+from annotations.background.carrying_out_jobs import carry_out
+from annotations.background.job_files import folder_of, jobs_folder
 from annotations.background.progress import Unwatched
+from annotations.background.requesting import answer_job, cancel_job
 from annotations.campaigns import crowd_jobs, crowd_results
 from annotations.campaigns.answering import save_answer
 from annotations.campaigns.campaign_files import task_file
@@ -24,10 +27,7 @@ from annotations.campaigns.moderation import accept
 from annotations.campaigns.progress import progress_of
 from annotations.campaigns.pseudonyms import pseudonym_of
 from annotations.campaigns.tasks import begin
-from annotations.jobs import answer_job, cancel_job
-from annotations.jobs.carrying_out import carry_out
-from annotations.jobs.files import folder_of, jobs_folder
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts.errors import LanguageError, Refusal
 from annotations.models import Campaign, Contributor, Job, Paraphrase, Submission
 from annotations.models.campaigns import ContributorKind
 from tests.crowd_tables import FIND, GO, results

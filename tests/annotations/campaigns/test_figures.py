@@ -11,9 +11,9 @@ from annotations.campaigns.contributor_figures import contributors_of
 from annotations.campaigns.moderation import accept, reject
 from annotations.campaigns.paraphrase_figures import figures_of, form_counts
 from annotations.campaigns.tasks import begin
-from annotations.importing.pair_import import import_pairs
-from annotations.language.agreement import wilson_interval
+from annotations.exchange.pair_import import import_pairs
 from annotations.language.corpus import distance
+from annotations.language.corpus.agreement import wilson_interval
 from annotations.models import LogicalForm, Paraphrase
 from annotations.models.campaigns import Contributor, ContributorKind
 from tests.launched_campaigns import small_campaign

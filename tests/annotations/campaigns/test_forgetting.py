@@ -16,18 +16,18 @@ from annotations.campaigns.answering import save_answer
 from annotations.campaigns.closing import forget
 from annotations.campaigns.moderation import accept, mend
 from annotations.campaigns.tasks import begin
-from annotations.commenting import SUBJECTS, add_comment, change_comment
+from annotations.editing.commenting import SUBJECTS, add_comment, change_comment
 from annotations.editing.drafts import save_draft
 from annotations.editing.edits import change, delete
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import refill
 from annotations.models import Comment, Contributor, Draft, Job, Origin, Paraphrase, Utterance
 from annotations.models.campaigns import SubmissionKind
-from annotations.queueing.enqueuing import refill
 from annotations.rows.history import history_of
 from gpsr_site.backup.backup_tables import tables
 from gpsr_site.backup.backup_writing import write_backup
-from tests.annotations.world_archive.packing import members_of, pack
+from tests.annotations.exchange.packing import members_of, pack
 from tests.doubted_labels import doubt
 from tests.gpsr_site.backup.limits import fill_every_column
 from tests.launched_campaigns import small_campaign

@@ -7,8 +7,8 @@ import pytest
 from annotations.campaigns.answering import named_in
 from annotations.campaigns.launching import PromptChoice, draw_prompts
 from annotations.campaigns.tasks import begin
-from annotations.language.errors import Refusal
-from annotations.language.paraphrases import lost_entities
+from annotations.language.corpus import lost_entities
+from annotations.language.texts.errors import Refusal
 from annotations.models import Paraphrase
 
 

@@ -18,7 +18,7 @@ from annotations.campaigns.tasks import begin
 from annotations.editing.edits import change
 from annotations.labelling.collecting import collect
 from annotations.language.corpus import distance
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts.errors import LanguageError, Refusal
 from annotations.models import Origin, Paraphrase, Submission, Utterance
 from annotations.rows.history import history_of
 from tests.at_once import at_once

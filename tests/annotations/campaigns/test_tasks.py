@@ -15,8 +15,8 @@ from annotations.campaigns.limits import TooOften
 from annotations.campaigns.progress import progress_of
 from annotations.campaigns.pseudonyms import market_id_in, pseudonym_of
 from annotations.campaigns.tasks import CampaignOver, begin, choose_prompts
-from annotations.language.errors import Refusal
-from annotations.language.paraphrases import RewriteFault
+from annotations.language.corpus import RewriteFault
+from annotations.language.texts.errors import Refusal
 from annotations.models import Campaign, Contributor, Submission
 from annotations.models.campaigns import GRACE, ContributorKind
 from tests.at_once import at_once

@@ -16,9 +16,9 @@ import parser_service.management.commands
 from annotations.management.base import ReportingCommand
 from annotations.models import AuditEntry, User, World
 from annotations.people.audit_log import prune
-from parser_service.promotions.promoting import promoted_run
+from parser_service.runs.promoting import promoted_run
 from tests.annotations.commands.run_command import run
-from tests.annotations.world_archive.packing import pack
+from tests.annotations.exchange.packing import pack
 from tests.parser_service.made_up import make_split
 
 PACKAGES = (annotations, gpsr_site, parser_service)

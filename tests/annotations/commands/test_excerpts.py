@@ -3,7 +3,7 @@
 import pytest
 from django.core.management import CommandError, call_command
 
-from annotations.language.errors import Position, warning_at
+from annotations.language.texts.errors import Position, warning_at
 from annotations.management.base import ReportingCommand
 from annotations.rows.stored_problems import as_json
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from tests.annotations.commands.run_command import run
 
 

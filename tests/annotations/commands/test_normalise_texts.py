@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.generation.freezing import freeze_split
 from annotations.generation.generating import generate_pairs
 from annotations.labelling.collecting import collect
 from annotations.models import AuditEntry, Entity, Example, Predicate, SemanticTemplate
 from annotations.rows.history import keys_changed_by_people
-from annotations.splits.freezing import freeze_split
 from tests.annotations.commands.run_command import run
-from tests.annotations.world_archive.packing import everything_of
+from tests.annotations.exchange.packing import everything_of
 from tests.doubted_labels import say
 
 

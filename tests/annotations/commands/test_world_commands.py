@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from annotations.models import World
 from tests.annotations.commands.run_command import run
-from tests.annotations.world_archive.packing import everything_of
+from tests.annotations.exchange.packing import everything_of
 
 
 def test_a_world_moves_by_a_file(tiny_world, tmp_path):

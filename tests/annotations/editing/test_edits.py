@@ -7,10 +7,10 @@ from django.core.exceptions import ValidationError
 from django.db import transaction
 
 from annotations.editing.edits import Overtaken, add, change, delete, restore
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.world_deletion import delete_world
 from annotations.models import Entity, Paraphrase, Predicate, Production, SemanticTemplate
 from annotations.models.description import TemplateStatus
-from annotations.worlds.world_deletion import delete_world
 from tests.sample_world import make_paraphrase
 
 KINDS = [SemanticTemplate, Entity, Predicate, Production, Paraphrase]

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.editing.merged_fields import merge
-from annotations.form_presentation import compare
+from annotations.showing.form_presentation import compare
 
 SIDES = st.fixed_dictionaries({name: st.sampled_from("abc") for name in ("pattern", "form")})
 

@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.exchange.generator_import import import_generator
 from annotations.generation.complexity import complexity
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
-from annotations.language.errors import LanguageError
+from annotations.language.texts.errors import LanguageError
 from annotations.models import Command, LogicalForm, World
 from annotations.models.description import ProblemSubject
 from tests.annotations.rows_of import rows_of

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.generation.grounded_pairs import grounded_pairs
-from annotations.language.errors import LanguageError
+from annotations.language.texts.errors import LanguageError
 from annotations.models import Entity
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from django.urls import reverse
 
-from annotations.checking.production_check import ProductionEdit, check_production
-from annotations.checking.template_check import check_template
 from annotations.editing.edits import change
-from annotations.exporting.generator_export import generator_files
+from annotations.exchange.generator_export import generator_files
+from annotations.exchange.generator_import import import_generator
 from annotations.generation.generating import generate_pairs
+from annotations.generation.production_check import ProductionEdit, check_production
+from annotations.generation.template_check import check_template
 from annotations.generation.world_consequences import consequences
-from annotations.importing.generator_import import import_generator
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus
 from annotations.web.description.template_forms import change_to

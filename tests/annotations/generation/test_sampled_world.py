@@ -5,17 +5,17 @@ from __future__ import annotations
 import pytest
 
 from annotations.campaigns.launching import PromptChoice, draw_prompts
-from annotations.checking.template_check import check_template
-from annotations.exporting.split_manifest import manifest_of
+from annotations.exchange.split_manifest import manifest_of
 from annotations.generation.coverage import coverage_of
+from annotations.generation.freezing import freeze_split
 from annotations.generation.generating import generate_pairs, start_generation
 from annotations.generation.grounded_pairs import grounded_pairs
 from annotations.generation.language_size import language_size
+from annotations.generation.template_check import check_template
 from annotations.generation.uncovered import uncovered_of
 from annotations.generation.up_to_date import bring_up_to_date
 from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, Balance, SampleRequest
 from annotations.models import Job, TaskCategory, World
-from annotations.splits.freezing import freeze_split
 
 TWO = SampleRequest(2, 7)
 

@@ -8,9 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from annotations.editing.edits import add, change, delete, restore
+from annotations.exchange.generator_import import import_generator
 from annotations.generation import kept_expansions
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
 from annotations.language.templates import BoundedCache
 from annotations.models import Job, JobKind, Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import ProblemSubject, TemplateStatus

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.exchange.generator_import import import_generator
 from annotations.generation import waiting
 from annotations.generation.generating import generate_pairs
 from annotations.generation.waiting import waiting_commands
-from annotations.importing.generator_import import import_generator
-from annotations.language.errors import LanguageError
+from annotations.language.texts.errors import LanguageError
 from annotations.models import World
 from tests.annotations.conftest import TINY, as_bytes
 

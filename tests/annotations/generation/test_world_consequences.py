@@ -7,14 +7,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from annotations.editing.edits import add, change
+from annotations.exchange.generator_import import import_generator
 from annotations.generation import kept_expansions
+from annotations.generation.freezing import freeze_split
 from annotations.generation.generating import generate_pairs
 from annotations.generation.world_consequences import consequences
-from annotations.importing.generator_import import import_generator
 from annotations.language.templates import BoundedCache
 from annotations.models import SemanticTemplate, TaskCategory
 from annotations.models.description import TemplateStatus
-from annotations.splits.freezing import freeze_split
 from annotations.web.description.template_forms import change_to
 from tests.annotations.conftest import as_bytes
 from tests.annotations.generation.test_up_to_date import (

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from annotations.labelling.collecting import MOST_AT_ONCE, _read, collect
 from annotations.labelling.entity_spans import mend_span
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import Entity
 
 

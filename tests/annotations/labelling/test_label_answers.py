@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import AnsweredMeanwhile, accept, label, take_back
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import Label, Utterance, Verdict
 
 BRING = '(bring (λ$1:e (is_a $1 "<object>")))'

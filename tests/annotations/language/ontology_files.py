@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from annotations.language.errors import Problem
-from annotations.language.ontology import ONTOLOGY_FILES, Ontology, read_ontology
+from annotations.language.texts.errors import Problem
+from annotations.language.world import ONTOLOGY_FILES, Ontology, read_ontology
 
 
 def read_ontology_folder(folder: Path) -> tuple[Ontology, tuple[Problem, ...]]:

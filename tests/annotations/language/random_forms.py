@@ -10,10 +10,11 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Nonterminal,
     Reference,
     Variable,
+    Wildcard,
 )
-from annotations.language.symbols import Nonterminal, Wildcard
 
 PREDICATES = st.sampled_from(["bring", "and", "is_a", "left_of", "x", "lambdas", "UNKNOWNS", "y-z"])
 TEXTS = st.one_of(

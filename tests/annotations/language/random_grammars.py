@@ -7,8 +7,7 @@ from itertools import product
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from annotations.language.grammar import Grammar, Production
-from annotations.language.symbols import (
+from annotations.language.forms import (
     TYPES,
     Choice,
     Combination,
@@ -18,8 +17,9 @@ from annotations.language.symbols import (
     Text,
     Wildcard,
 )
-from annotations.language.symbols.reader import as_sequence
-from annotations.language.symbols.symbols import ALIASES
+from annotations.language.forms.reader import as_sequence
+from annotations.language.forms.symbols import ALIASES
+from annotations.language.grammar import Grammar, Production
 
 NAMES = st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}", fullmatch=True)
 WORDS = st.one_of(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.world import Entity, Ontology
 
 HOME = Ontology(
     (

@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.agreement import alpha, exact_match, gwet_ac1, measure, read_ratings
+from annotations.language.corpus.agreement import (
+    alpha,
+    exact_match,
+    gwet_ac1,
+    measure,
+    read_ratings,
+)
 
 # Krippendorff, Computing Krippendorff's Alpha-Reliability (2011), section C: four observers, twelve
 # units, some ratings missing. The same ratings are ``cac.raw4raters`` of Gwet's R package irrCAC.

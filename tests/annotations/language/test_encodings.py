@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.decoding import ENCODINGS, decode, to_utf8
-from annotations.language.errors import LanguageError, Position
-from annotations.language.ontology import read_ontology
+from annotations.language.texts.decoding import ENCODINGS, decode, to_utf8
+from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.world import read_ontology
 
 NAMES = "<names>\n<name>Gabriëlle</name>\n</names>"
 

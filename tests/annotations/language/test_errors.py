@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.errors import LanguageError, Position, Refusal
+from annotations.language.texts.errors import LanguageError, Position, Refusal
 
 
 class Taken(Refusal):

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from annotations.language.errors import Refusal
-from annotations.language.label_errors import LabelledPair, assign_folds, source_key
+from annotations.language.corpus.label_errors import LabelledPair, assign_folds, source_key
+from annotations.language.texts.errors import Refusal
 
 PAIRS = st.lists(st.sampled_from([f"go to {number}" for number in range(12)]), max_size=40)
 

@@ -4,10 +4,10 @@ from itertools import islice
 
 import pytest
 
-from annotations.language.errors import LanguageError
 from annotations.language.grammar import Recognizer, read_productions
 from annotations.language.grammar.productions import print_production
 from annotations.language.templates import read_generator_folder
+from annotations.language.texts.errors import LanguageError
 
 
 @pytest.fixture(scope="module")

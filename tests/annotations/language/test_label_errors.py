@@ -6,9 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.english import CONTRASTS, NEAR_SYNONYMS, PREDICATE_WORDS
-from annotations.language.forms import canonical_text, predicates, read_form
-from annotations.language.label_errors import (
+from annotations.language.corpus.label_errors import (
     LabelledPair,
     Reason,
     ScoredForm,
@@ -18,6 +16,8 @@ from annotations.language.label_errors import (
     contradictions,
     rank,
 )
+from annotations.language.forms import canonical_text, predicates, read_form
+from annotations.language.texts import CONTRASTS, NEAR_SYNONYMS, PREDICATE_WORDS
 
 MALE = '( count ( lambda $1 e ( person $1 ) ( male $1 ) ( at $1 " <room> " ) ) )'
 FEMALE = MALE.replace("male", "female")

@@ -6,13 +6,8 @@ from xml.sax.xmlreader import Locator
 import pytest
 
 from annotations import models
-from annotations.language import limits
-from annotations.language.decoding import decode
-from annotations.language.errors import LanguageError, Offsets, Position, Problem, Severity
 from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, Recognizer, read_production, read_productions
-from annotations.language.ontology import ontology_files, read_ontology
-from annotations.language.predicates import infer_signatures
 from annotations.language.templates import (
     TaskCategory,
     TemplateExpander,
@@ -22,6 +17,10 @@ from annotations.language.templates import (
     set_problems,
 )
 from annotations.language.templates.template_checks import problems
+from annotations.language.texts import limits
+from annotations.language.texts.decoding import decode
+from annotations.language.texts.errors import LanguageError, Offsets, Position, Problem, Severity
+from annotations.language.world import infer_signatures, ontology_files, read_ontology
 from tests.work import growth
 
 GRAMMAR = Grammar(read_productions("$Main = get the $thing\n$thing = " + "x" * 100).productions)

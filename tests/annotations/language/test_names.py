@@ -6,12 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import canonical_text, predicates, read_form, to_template
-from annotations.language.grammar import Grammar, print_production, read_production
-from annotations.language.grammar.productions import Production
-from annotations.language.grounding import Anonymizer
-from annotations.language.names import (
+from annotations.language.corpus.names import (
     EntityName,
     rename_in_attributes,
     rename_in_conditions,
@@ -25,8 +20,18 @@ from annotations.language.names import (
     require_nonterminal,
     require_predicate,
 )
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import print_sequence
+from annotations.language.forms import (
+    canonical_text,
+    predicates,
+    print_sequence,
+    read_form,
+    to_template,
+)
+from annotations.language.grammar import Grammar, print_production, read_production
+from annotations.language.grammar.productions import Production
+from annotations.language.grounding import Anonymizer
+from annotations.language.texts.errors import LanguageError
+from annotations.language.world import Entity, Ontology
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.random_grammars import (
     EXPANSIONS,

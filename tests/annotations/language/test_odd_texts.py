@@ -6,15 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.corpus import read_pairs, read_triples
-from annotations.language.decoding import decode
-from annotations.language.errors import LanguageError
-from annotations.language.forms import canonical_text, read_form, to_reading, to_template
+from annotations.language.forms import (
+    canonical_text,
+    read_form,
+    read_wildcard,
+    to_reading,
+    to_template,
+)
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.grounding import Anonymizer
-from annotations.language.ontology import read_ontology
-from annotations.language.predicates import gloss, infer_signatures
-from annotations.language.predicates.gloss_patterns import read_pattern
-from annotations.language.symbols import read_wildcard
 from annotations.language.templates import (
     generate,
     make_template,
@@ -24,6 +24,10 @@ from annotations.language.templates import (
     template_checker,
 )
 from annotations.language.templates.templates import read_templates
+from annotations.language.texts.decoding import decode
+from annotations.language.texts.errors import LanguageError
+from annotations.language.world import gloss, infer_signatures, read_ontology
+from annotations.language.world.gloss_patterns import read_pattern
 
 PIECES = st.sampled_from(
     [

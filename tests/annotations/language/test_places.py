@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from annotations.language.corpus.names import EntityName, rename_in_utterance
 from annotations.language.grounding import Anonymizer, HearingReader
 from annotations.language.grounding.hearing import HeardText
-from annotations.language.names import EntityName, rename_in_utterance
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.requests import StoppingWords, cut_at_joints, objections, sentences
-from annotations.language.text import find_words, normalise, normalise_line, places_of
+from annotations.language.plans import StoppingWords, cut_at_joints, objections, sentences
+from annotations.language.texts.text import find_words, normalise, normalise_line, places_of
+from annotations.language.world import Entity, Ontology
 
 ROOT = Path(__file__).parents[3]
 # Their folded forms have other lengths: ß, İ, ŉ, ﬁ, ǰ, ΐ, ẖ, full-width letters, marks of their own, joined emoji.

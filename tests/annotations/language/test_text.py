@@ -7,9 +7,9 @@ import unicodedata
 
 import pytest
 
-from annotations.language.decoding import decode, read_text
-from annotations.language.errors import LanguageError, Severity
-from annotations.language.text import (
+from annotations.language.texts.decoding import decode, read_text
+from annotations.language.texts.errors import LanguageError, Severity
+from annotations.language.texts.text import (
     MOST_MARKS,
     MOST_WARNINGS,
     TextChanges,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.generation.freezing import freeze_split
 from annotations.models import Command, Entity, Example, Paraphrase
-from annotations.splits.freezing import freeze_split
 
 
 @pytest.fixture

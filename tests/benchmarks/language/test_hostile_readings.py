@@ -7,8 +7,8 @@ from functools import lru_cache
 
 import pytest
 
-from annotations.form_presentation import compare, merge_words
 from annotations.language.forms import diff, diff_unordered, read_form
+from annotations.showing.form_presentation import compare, merge_words
 from benchmarks.language.hostile_patterns import HostileText, seconds
 from benchmarks.language.hostile_readings import READERS, SIZES, UNITS, slow_reading
 

@@ -7,7 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.models import AuditFinding
 from tests.browser.arriving import wait_for_swap
 from tests.doubted_labels import FEMALE, GO, MALE, doubt, say

@@ -10,11 +10,11 @@ from django.test import Client
 from playwright.sync_api import Page, expect
 
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import set_share
+from annotations.labelling.giving import next_item
+from annotations.labelling.item_answers import answer
 from annotations.models import Comment, Draft, User, Verdict, WorkKind, World
 from annotations.models.worlds import Role
-from annotations.queueing.enqueuing import set_share
-from annotations.queueing.giving import next_item
-from annotations.queueing.item_answers import answer
 from parser_service.models import Review
 from tests.browser.arriving import arrive
 from tests.browser.conftest import give_window

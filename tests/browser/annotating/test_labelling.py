@@ -9,9 +9,9 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import set_share
 from annotations.labelling.label_answers import label
 from annotations.models import Draft, Label, Utterance, Verdict, WorkKind
-from annotations.queueing.enqueuing import set_share
 from tests.browser.conftest import give_window
 from tests.waiting import wait_for
 

@@ -6,9 +6,9 @@ import pytest
 from playwright.sync_api import expect
 
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import set_share
 from annotations.models import Utterance, WorkKind
 from annotations.models.worlds import Role
-from annotations.queueing.enqueuing import set_share
 from tests.browser.arriving import arrive_at
 from tests.conftest import member
 

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from annotations import background
-from annotations.jobs.carrying_out import carry_out
+from annotations.background.carrying_out_jobs import carry_out
 from annotations.models import Job, Submission
 from tests.browser.faults import listen, narrow_and_dark, only_faults, wide_and_light
 from tests.browser.variants import NARROW_DARK, VARIANTS, WIDE_LIGHT

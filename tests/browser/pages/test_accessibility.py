@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.collecting import collect
 from annotations.models import SemanticTemplate
 from tests.browser.faults import (

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from annotations.models import Command, LogicalForm
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from tests.browser.arriving import wait_for_swap
 from tests.browser.faults import narrow_and_dark, only_faults, wide_and_light
 from tests.browser.variants import NARROW_DARK, SIZES, VARIANTS, WIDE_LIGHT, Variant

@@ -7,7 +7,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from tests.annotations.lists.test_list_pages import many_commands
+from tests.annotations.showing.test_list_pages import many_commands
 from tests.browser.arriving import wait_for_swap
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

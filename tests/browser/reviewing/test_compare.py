@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from parser_service.models import Slice, TrainingRun
-from parser_service.slices.saving import save_slice as save_a_slice
+from parser_service.results.saving import save_slice as save_a_slice
 from tests.browser.walking import enter, follow, skip_to_content, tab_to
 from tests.sample_world import scored_run
 

@@ -9,13 +9,13 @@ from playwright.sync_api import expect
 
 from annotations.background.progress import UNWATCHED
 from annotations.models import Job, JobKind
-from parser_service.analyses.analysis_job import OF_PARTS
-from parser_service.analyses.stored_findings import keep_finding
-from parser_service.analyses.target import Target
-from parser_service.analyses.tryout_answers import answer_jobs
 from parser_service.models import Tryout
+from parser_service.reviews.analysis_job import OF_PARTS
+from parser_service.reviews.stored_findings import keep_finding
+from parser_service.reviews.target import Target
+from parser_service.reviews.tryout_answers import answer_jobs
 from tests.filled_world import save_parser
-from tests.parser_service.analyses.conftest import done
+from tests.parser_service.reviews.analyses.conftest import done
 from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]

@@ -6,16 +6,16 @@ import os
 from pathlib import Path
 
 from annotations.background.progress import UNWATCHED
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.pair_import import import_pairs
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
-from annotations.importing.pair_import import import_pairs
 from annotations.models import Example, Split, World
 from annotations.rows.occurrences import paraphrase_of_example
 from parser_service.models import TrainingRun
 from parser_service.reviews.category_proposals import propose_for_run
 from tests.parser_service.made_up import TINY
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
-from tests.parser_service.runs.training.test_train_run import trained
+from tests.parser_service.runs.test_train_run import trained
 
 IS_FULL = os.environ.get("TEST_WALK") == "full"
 UNKNOWN = "UNKNOWN"

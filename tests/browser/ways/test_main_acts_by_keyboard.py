@@ -12,7 +12,7 @@ from playwright.sync_api import Page, expect
 
 from annotations.models import Invitation
 from parser_service.models import TrainingRun
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from tests.browser.arriving import arrive, arrive_at, wait_for_swap
 from tests.browser.walking import follow, place, skip_to_content, tab_to
 from tests.filled_world import save_parser

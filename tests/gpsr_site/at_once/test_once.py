@@ -15,11 +15,12 @@ from django.core.exceptions import ImproperlyConfigured
 from django.db import transaction
 from django.test import Client
 
-from annotations.label_audit.audit_findings import store_findings
-from annotations.label_audit.label_decisions import decide
+from annotations.generation.freezing import freeze_split
+from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.label_answers import label
+from annotations.labelling.label_decisions import decide
 from annotations.labelling.proposal_requests import request_proposals
-from annotations.language.dialogue import Offer
+from annotations.language.plans import Offer
 from annotations.models import (
     ApiToken,
     Entity,
@@ -34,17 +35,16 @@ from annotations.models import (
 from annotations.models.worlds import Role
 from annotations.people.accounts import password_path
 from annotations.people.invitations import join
-from annotations.splits.freezing import freeze_split
 from gpsr_site import private_files
 from gpsr_site.management.commands.quickstart import Command as Quickstart
-from parser_service.dialogues.entity_offers import offer
-from parser_service.label_audit.audit_job import request_audit
+from parser_service.labelling.audit_job import request_audit
 from parser_service.models import Promotion, PromotionState, TrainingRun
-from parser_service.promotions.promotion_rule import consider
 from parser_service.results.measuring_job import request_measurement
+from parser_service.runs import run_requests
 from parser_service.runs.analysis_requests import request_analysis
-from parser_service.runs.requests import run_requests
+from parser_service.runs.promotion_rule import consider
 from parser_service.serving.batch_requests import MOST_AT_ONCE, request_batch
+from parser_service.serving.entity_offers import offer
 from tests.at_once import at_once
 from tests.conftest import client_of, member
 from tests.doubted_labels import doubt, say

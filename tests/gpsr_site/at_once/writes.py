@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.world_export import world_archive
 from annotations.models import ApiToken, User, World
 from annotations.models.people import LogInSession
 from annotations.people.accounts import sessions_of
-from annotations.world_archive.world_export import world_archive
 from tests.annotations.conftest import TINY, as_bytes
 from tests.conftest import client_of
 from tests.gpsr_site.routes.addresses import KEYS, RouteKeys

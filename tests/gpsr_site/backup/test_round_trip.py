@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from django.db import connection, connections, transaction
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import ApiToken, LogInSession, SemanticTemplate, User, World
 from annotations.models.worlds import Role
 from gpsr_site.backup.backup_manifest import NAME

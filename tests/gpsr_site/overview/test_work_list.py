@@ -7,6 +7,8 @@ import re
 import pytest
 
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import refill
+from annotations.labelling.giving import next_item
 from annotations.language.corpus import Criterion
 from annotations.language.grammar import Grammar
 from annotations.models import (
@@ -18,8 +20,6 @@ from annotations.models import (
     World,
 )
 from annotations.models.worlds import DUTIES, Role
-from annotations.queueing.enqueuing import refill
-from annotations.queueing.giving import next_item
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import counts_of
 from gpsr_site.overview.first_steps import first_steps
@@ -27,7 +27,7 @@ from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import Workers, workers_now
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.runs import Status
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from tests.parser_service.made_up import make_split
 from tests.sample_world import make_paraphrase, scored_run
 

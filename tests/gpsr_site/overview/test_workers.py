@@ -8,7 +8,7 @@ from django.utils import timezone
 from annotations.models.background import Queue
 from gpsr_site.overview.workers import TAKEN_BY, workers_now
 from parser_service.models import TrainingRun, Worker
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 
 
 def alive(*queues: str) -> None:

@@ -7,7 +7,7 @@ from datetime import timedelta
 from django.db.models import Model
 from django.utils import timezone
 
-from annotations.language.dialogue import DialogueState, Offer, Phase
+from annotations.language.plans import DialogueState, Offer, Phase
 from annotations.models import (
     AuditDecision,
     AuditFinding,
@@ -25,9 +25,9 @@ from annotations.models import (
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
-from parser_service.dialogues.entity_offers import offer
 from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
 from parser_service.reviews.world_categories import ensure_categories
+from parser_service.serving.entity_offers import offer
 from tests.sample_world import SampleWorld, own_class_in, paraphrase_in
 
 

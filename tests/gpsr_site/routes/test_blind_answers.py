@@ -11,11 +11,11 @@ import zipfile
 import pytest
 from django.urls import reverse
 
+from annotations.labelling.agreeing import report_agreement
+from annotations.labelling.giving import take
+from annotations.labelling.item_answers import answer
 from annotations.models import Label, Predicate, User, WorkItem
 from annotations.models.worlds import Role
-from annotations.queueing.agreeing import report_agreement
-from annotations.queueing.giving import take
-from annotations.queueing.item_answers import answer
 from tests.conftest import member
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.listing import ALL_ROUTES

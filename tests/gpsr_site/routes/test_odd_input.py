@@ -13,8 +13,8 @@ import pytest
 from django.db import connection
 from django.urls import get_resolver
 
-from annotations.lists.listing import Listing
-from annotations.lists.paging import page_of, read_cursor
+from annotations.showing.listing import Listing
+from annotations.showing.paging import page_of, read_cursor
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.listing import ALL_ROUTES
 from tests.gpsr_site.routes.policy import POLICY

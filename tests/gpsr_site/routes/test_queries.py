@@ -7,7 +7,7 @@ from django.core.cache import cache
 from django.db import DatabaseError, connection, models, transaction
 from django.test.utils import CaptureQueriesContext
 
-from annotations.worlds.world_deletion import _deletion_order, _paths_to_world
+from annotations.exchange.world_deletion import _deletion_order, _paths_to_world
 from parser_service.models import Evaluation
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.policy import POLICY

@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from annotations.models import ApiToken, Notice
 from annotations.people.accounts import sessions_of
 from annotations.web.rest.streaming import JSON_LINES
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from tests.filled_world import save_parser
 from tests.gpsr_site.routes.addresses import KEYS, RouteKeys
 from tests.gpsr_site.routes.bodies import NAMES_IN_THE_SCHEMA, numbered
@@ -71,7 +71,7 @@ def test_no_request_is_an_error_of_the_server(
     operations, sample, superuser, answering, keys, monkeypatch
 ):
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-    monkeypatch.setattr("annotations.jobs.requesting.keep_uploads", lambda uploads: None)
+    monkeypatch.setattr("annotations.background.requesting.keep_uploads", lambda uploads: None)
     _, key = ApiToken.issue(superuser, "robot")
     caller = Caller(Client(raise_request_exception=False), key, sample, keys)
     share = CASES / sum(WRITES[each.method] for each in operations)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from django.core.management import get_commands, load_command_class
 
-from annotations.language.english import article, looks_plural
+from annotations.language.texts import article, looks_plural
 from parser_service.parsers.registry import PARSERS
 from tests.filled_world import leave_traces
 from tests.gpsr_site.routes.addresses import address

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import Entity, User, Utterance
 from annotations.web.sent_texts import LONGEST_FIELD, SentTexts
 from parser_service.serving.preparing import require_utterance

@@ -6,16 +6,9 @@ import pytest
 from hypothesis import assume, given
 
 from annotations.language.forms import canonical_text, read_form
-from parser_service.analysis.categories import (
-    DESCRIPTIONS,
-    ErrorCategory,
-    ErrorEvidence,
-    LabelDoubt,
-    Neighbour,
-    RunEvidence,
-    propose_categories,
-    propose_category,
-)
+from parser_service.analysis.category_proposals import propose_categories, propose_category
+from parser_service.analysis.error_categories import DESCRIPTIONS, ErrorCategory
+from parser_service.analysis.error_evidence import ErrorEvidence, LabelDoubt, Neighbour, RunEvidence
 from tests.annotations.language.random_forms import forms
 
 GOLD = read_form('(bring (λ$1:e (is_a $1 "<object>") (at $1 "<room>")))')

@@ -7,13 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.forms import read_form
-from parser_service.analysis.categories import (
-    ErrorEvidence,
-    LabelDoubt,
-    SpokenFor,
-    WordUse,
-    propose_category,
-)
+from parser_service.analysis.category_proposals import propose_category
+from parser_service.analysis.error_evidence import ErrorEvidence, LabelDoubt
+from parser_service.analysis.word_use import SpokenFor, WordUse
 
 AT_ROOM = read_form('(put (λ$1:e (is_a $1 "<object>") (at $1 "<room>")) "<location>")')
 PUT = read_form('(put (λ$1:e (is_a $1 "<object>")) "<location>")')

@@ -7,8 +7,8 @@ import pickle
 import pytest
 
 from annotations.language.forms import read_form
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.recipes import RecipeBook, default_book
+from annotations.language.plans import RecipeBook, default_book
+from annotations.language.world import Entity, Ontology
 from parser_service.analysis import plan_agreement
 from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.analysis.scores import judge

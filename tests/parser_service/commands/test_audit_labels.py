@@ -8,13 +8,13 @@ from io import StringIO
 import pytest
 from django.core.management import CommandError, call_command
 
+from annotations.exchange.generator_import import import_generator
+from annotations.exchange.pair_import import import_pairs
 from annotations.generation.generating import generate_pairs
-from annotations.importing.generator_import import import_generator
-from annotations.importing.pair_import import import_pairs
-from annotations.language.label_errors import Reason
+from annotations.language.corpus.label_errors import Reason
 from annotations.models import Command, Paraphrase
 from annotations.models.corpus import ParaphraseStatus
-from parser_service.label_audit.audit_job import audit_labels
+from parser_service.labelling.audit_job import audit_labels
 
 GO, FIND = '( go " <room> " )', '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 SAID = {

@@ -6,9 +6,9 @@ import shutil
 
 import pytest
 
-from annotations.importing.generator_import import import_generator
-from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
+from annotations.exchange.generator_import import import_generator
 from parser_service.management.options import read_seeds
+from parser_service.results.corpus import new_split, read_corpus, source_commands
 from tests.parser_service.commands.benchmark_run import run
 from tests.parser_service.made_up import made_up_pairs
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from django.core.management import call_command
 
+from annotations.exchange.starter_world import STARTER_FOLDER
 from annotations.models import Entity
-from annotations.worlds.starter_world import STARTER_FOLDER
 
 REFERENCE = Path(__file__).resolve().parents[3] / "docs" / "reference"
 

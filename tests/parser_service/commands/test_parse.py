@@ -10,11 +10,10 @@ from django.core.management import CommandError, call_command
 
 from annotations.models import Entity, Ontology, Split
 from parser_service.models import TrainingRun
-from parser_service.promotions.promoting import promote
-from parser_service.runs import lifecycle
+from parser_service.runs import lifecycle, run_requests
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.train_run import train
+from parser_service.runs.promoting import promote
+from parser_service.runs.train_run import train
 from parser_service.serving.default_runs import best_run
 from tests.parser_service.made_up import TINY, make_split
 

@@ -11,7 +11,7 @@ from io import StringIO
 import pytest
 from django.core.management import CommandError, call_command
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from tests.annotations.commands.run_command import ROOT, run_process
 from tests.annotations.conftest import TINY, as_bytes
 from tests.migrated import copy_installation

@@ -17,8 +17,7 @@ from django.utils import timezone
 
 from annotations.models import Split
 from parser_service.models import TrainingRun
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.runs import lifecycle, run_requests
 from tests.parser_service.made_up import LONG, make_split
 from tests.parser_service.worker_process import ROOT, database_url, wait_for_epochs
 from tests.waiting import PATIENCE_SECONDS, wait_for

@@ -9,18 +9,18 @@ from django.db import connection
 from django.test.utils import CaptureQueriesContext
 
 from annotations import background
+from annotations.background.carrying_out_jobs import carry_out
 from annotations.background.progress import UNWATCHED, Unwatched
-from annotations.jobs.carrying_out import carry_out
+from annotations.generation.freezing import plan_split
 from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import label
 from annotations.labelling.proposal_requests import request_proposals
 from annotations.language.forms import canonical_text, read_form
 from annotations.models import Job, JobKind, Proposal, Verdict
-from annotations.splits.freezing import plan_split
 from parser_service.labelling.label_candidates import MOST_CANDIDATES, candidates_for
 from parser_service.labelling.parser_proposals import enqueue_doubts
 from parser_service.runs import lifecycle
-from parser_service.runs.training.train_run import train
+from parser_service.runs.train_run import train
 from tests.parser_service.requests import ask
 
 FIND = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'

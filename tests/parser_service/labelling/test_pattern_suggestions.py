@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from annotations import background
+from annotations.background.carrying_out_jobs import carry_out
 from annotations.editing.edits import delete
-from annotations.jobs.carrying_out import carry_out
 from annotations.models import (
     CommandProposal,
     Job,
@@ -17,7 +17,7 @@ from annotations.models import (
 )
 from parser_service.labelling.pattern_suggestions import suggest_with_parsers
 from parser_service.runs import lifecycle
-from parser_service.runs.training.train_run import train
+from parser_service.runs.train_run import train
 from parser_service.serving.loading import _load
 from tests.parser_service.requests import ask
 

@@ -5,7 +5,7 @@ import sys
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.pretrained import encoder_hash, load_encoder
 from parser_service.parsers.pretrained_files import find_encoder
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models.splits import Source
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import (

@@ -1,6 +1,6 @@
 import pytest
 
-from annotations.language.ontology import Ontology
+from annotations.language.world import Ontology
 from parser_service.parsers.interface import Candidate, Knowledge
 
 EVERYTHING = Knowledge(predicates={}, ontology=Ontology(()), grammar=())

@@ -1,6 +1,6 @@
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.interface import Cancelled, Candidate, Pair
 from parser_service.parsers.knn import NearestNeighbour, NearestNeighbourConfig
 from tests.parser_service.parsers.pair_files import read_pairs

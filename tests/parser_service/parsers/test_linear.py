@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from safetensors.numpy import load_file, save_file
 
-from annotations.language.errors import Refusal
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.texts.errors import Refusal
+from annotations.language.world import Entity, Ontology
 from parser_service.parsers import linear
 from parser_service.parsers.hyperparameters.linear import LinearConfig
 from parser_service.parsers.interface import Cancelled, Knowledge, Observer, Pair

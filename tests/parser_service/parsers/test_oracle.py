@@ -2,10 +2,8 @@ from random import Random
 
 import pytest
 
-from annotations.language.errors import Refusal
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.grounding import ground
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import (
     TaskCategory,
     TemplateExpander,
@@ -13,6 +11,8 @@ from annotations.language.templates import (
     read_generator_folder,
     read_template,
 )
+from annotations.language.texts.errors import Refusal
+from annotations.language.world import Entity, Ontology
 from parser_service.parsers.interface import Cancelled, Knowledge
 from parser_service.parsers.oracle import GRAMMAR, GrammarOracle
 from tests.annotations import starter

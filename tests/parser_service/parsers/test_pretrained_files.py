@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.pretrained_files import (
     ElmoFiles,

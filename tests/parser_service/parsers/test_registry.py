@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, is_dataclass
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser, ScoreKind
 from parser_service.parsers.registry import (

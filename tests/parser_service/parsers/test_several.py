@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
 from annotations.language.templates import (
     Balance,
     Language,
     SampleRequest,
     read_generator_folder,
 )
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.oracle import GrammarOracle
 from parser_service.parsers.several import pieces_of

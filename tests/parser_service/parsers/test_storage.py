@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.interface import Pair
 from parser_service.parsers.knn import NearestNeighbour
 from parser_service.parsers.nearest_pairs import PAIRS

@@ -10,7 +10,7 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from annotations.background.progress import UNWATCHED
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.world import Entity, Ontology
 from annotations.models import Example, Job, JobKind
 from parser_service.analysis.sureness import (
     LEAST_PEOPLE,

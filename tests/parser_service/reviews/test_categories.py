@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from parser_service.analysis.categories import DESCRIPTIONS, NAMES
-from parser_service.analysis.categories import ErrorCategory as Code
+from parser_service.analysis.error_categories import DESCRIPTIONS, NAMES
+from parser_service.analysis.error_categories import ErrorCategory as Code
 from parser_service.models import ErrorCategory
 from parser_service.reviews.world_categories import ensure_categories
 

@@ -6,7 +6,7 @@ import pytest
 
 from annotations.background import Stopped
 from annotations.background.progress import UNWATCHED, Unwatched
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.models import Entity, Example, FindingStatus, Ontology
 from parser_service.models import Prediction, Review, Slice
 from parser_service.reviews import category_proposals

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.label_audit.audit_findings import store_findings
-from annotations.label_audit.label_decisions import decide
+from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import label
-from annotations.language.errors import Refusal
+from annotations.labelling.label_decisions import decide
+from annotations.language.texts.errors import Refusal
 from annotations.models import FindingStatus, Paraphrase, Verdict
 from parser_service.reviews.label_doubts import doubt_label
 from tests.sample_world import make_paraphrase

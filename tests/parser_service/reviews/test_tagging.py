@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.models import Review
 from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
 from parser_service.reviews.world_categories import ensure_categories

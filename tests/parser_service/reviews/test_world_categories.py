@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.models import ErrorCategory, Slice
 from parser_service.reviews.tagging import tag
 from parser_service.reviews.world_categories import (

@@ -16,8 +16,7 @@ from kombu.exceptions import KombuError
 
 from annotations.background import TASK, message_queue
 from parser_service.models import Worker
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.runs import lifecycle, run_requests
 from tests.durability.site import free_port
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import wait_for_epochs, wait_for_status

@@ -8,7 +8,7 @@ import pytest
 from django.utils import timezone
 
 from annotations.background import claim_in_turn, finish, wake_for_forgotten
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.models import Checkpoint, TrainingRun
 from parser_service.parsers.interface import EpochReport
 from parser_service.runs import lifecycle

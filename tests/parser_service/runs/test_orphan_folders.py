@@ -7,7 +7,7 @@ from datetime import timedelta
 from django.conf import settings
 from django.utils import timezone
 
-from annotations.worlds.world_deletion import delete_world
+from annotations.exchange.world_deletion import delete_world
 from parser_service.models import RunFolder
 from parser_service.runs.checkpoints import run_folder
 from parser_service.runs.orphan_folders import FORGET_AFTER, keep_track_of, remove_orphans

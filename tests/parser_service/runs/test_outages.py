@@ -9,7 +9,7 @@ import pytest
 from django.db import connection
 
 from annotations.background import LEASE
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from tests.parser_service.made_up import LONG
 from tests.parser_service.proxy import Proxy
 from tests.parser_service.worker_process import wait_for_epochs

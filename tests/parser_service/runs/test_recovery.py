@@ -10,9 +10,8 @@ import pytest
 from django.db import OperationalError, connection, transaction
 
 from parser_service.models import TrainingRun, Worker
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.train_run import train
+from parser_service.runs import lifecycle, run_requests
+from parser_service.runs.train_run import train
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import states, wait_for_epochs, wait_for_status
 from tests.waiting import LOOK_EVERY, wait_for

@@ -12,8 +12,7 @@ import pytest
 
 from annotations.background import send_wake_up
 from parser_service.models import Worker
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.runs import lifecycle, run_requests
 from tests.parser_service.made_up import LONG, TINY
 from tests.parser_service.worker_process import ROOT, wait_for_epochs, wait_for_status
 from tests.waiting import PATIENCE_SECONDS, wait_for

@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from parser_service.models import Worker
-from parser_service.parsers.llm.server_address import ModelServer
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.parsers.server_address import ModelServer
+from parser_service.runs import lifecycle, run_requests
 from tests.parser_service.llm_server import KEY, MODEL, REPORTED, fails, installed, tiny_server
 from tests.parser_service.runs.test_worker import has_loaded_torch
 from tests.parser_service.worker_process import wait_for_status

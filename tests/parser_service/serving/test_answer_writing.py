@@ -19,9 +19,8 @@ from annotations.language.forms import (
     to_corpus,
 )
 from annotations.language.grounding import Anonymizer
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import ActionName, Lookup
-from annotations.language.predicates import Predicate, PredicateKind
+from annotations.language.world import Entity, Ontology, Predicate, PredicateKind
 from parser_service.parsers.interface import Candidate
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.parse_answers import as_json, read_answers

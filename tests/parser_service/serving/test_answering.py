@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from annotations.models import SemanticTemplate
 from parser_service.models import Answering
 from parser_service.models.answering import answering_of
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.answering import answering_parts, choose_answering, version_of
 from tests.annotations.conftest import import_tiny
 from tests.parser_service.made_up import make_split

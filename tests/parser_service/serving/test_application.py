@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.application import ParseApplication
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import LINES_TOGETHER, Shelf

@@ -8,12 +8,12 @@ import time
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.models import AnswererEvaluation
 from parser_service.models.answering import answering_of
-from parser_service.parsers.llm.server_address import ModelServer
-from parser_service.promotions.promoting import promote
+from parser_service.parsers.server_address import ModelServer
 from parser_service.results.measuring_job import answerer_of
+from parser_service.runs.promoting import promote
 from parser_service.serving.answerer import NotServed
 from parser_service.serving.answering import answering_parts, choose_answering
 from parser_service.serving.metrics import Metrics

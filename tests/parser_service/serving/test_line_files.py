@@ -7,7 +7,7 @@ import os
 
 import pytest
 
-from annotations.language.errors import LanguageError, Refusal
+from annotations.language.texts.errors import LanguageError, Refusal
 from parser_service.serving.line_files import (
     AT_ONCE,
     MOST_OF_A_LINE,

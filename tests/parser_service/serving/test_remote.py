@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from parser_service.parsers.llm.server_address import ModelServer
-from parser_service.promotions.promoting import promote
+from parser_service.parsers.server_address import ModelServer
+from parser_service.runs.promoting import promote
 from parser_service.serving import remote
 from parser_service.serving.application import ParseApplication
 from parser_service.serving.metrics import Metrics

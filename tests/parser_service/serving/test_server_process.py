@@ -20,7 +20,7 @@ from waitress.server import create_server
 
 from annotations.models import ApiToken
 from annotations.web.rest.streaming import BrokenOff
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving import parser_client
 from parser_service.serving.parser_client import AWAY, ParserAway, ParserClient, client
 from tests.parser_service.served import make_home, trained_run

@@ -7,13 +7,13 @@ import json
 import pytest
 from django.utils import timezone
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.models import Entity, World
 from parser_service.models import Answering, AnsweringOrder
-from parser_service.promotions.promoting import promote
+from parser_service.runs import run_requests
 from parser_service.runs.checkpoints import model_folder, remove_folder
-from parser_service.runs.requests import run_requests
-from parser_service.runs.training.knowledge import knowledge_of
+from parser_service.runs.knowledge import knowledge_of
+from parser_service.runs.promoting import promote
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import NotServed, Shelf
 from tests.annotations.conftest import TINY, as_bytes

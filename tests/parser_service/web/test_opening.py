@@ -10,7 +10,7 @@ from gpsr_site.overview.best_runs import best_runs
 from parser_service.models import Evaluation, TrainingRun, Worker
 from parser_service.models.runs import Status
 from parser_service.parsers.conditions import in_words
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.default_runs import best_two, opening_run
 from tests.parser_service.made_up import make_split
 from tests.parser_service.served import score

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.corpus import Criterion, SplitItem, draw_share
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 
 TEXTS = st.sampled_from(["go", "Go", "find it", "bring it", "take it", ""])
 ITEMS = st.lists(

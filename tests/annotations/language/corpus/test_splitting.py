@@ -16,7 +16,7 @@ from annotations.language.corpus import (
     split,
 )
 from annotations.language.corpus.splitting import Part
-from annotations.language.errors import LanguageError
+from annotations.language.texts.errors import LanguageError
 from tests.annotations.language.published import SHARED, needs_corpus
 
 ITEMS = st.lists(

@@ -14,8 +14,8 @@ from annotations.language.corpus import (
     read_triples,
     write_pairs,
 )
-from annotations.language.errors import Position
 from annotations.language.forms import Form, canonical_text, to_corpus
+from annotations.language.texts.errors import Position
 from tests.annotations.language.published import SHARED, needs_corpus
 from tests.annotations.language.random_forms import forms
 

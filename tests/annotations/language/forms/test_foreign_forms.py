@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import canonical_text, read_foreign_form, read_form
+from annotations.language.texts.errors import LanguageError, Position
 
 
 @pytest.mark.parametrize(

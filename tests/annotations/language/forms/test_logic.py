@@ -3,14 +3,15 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from annotations.language.errors import LanguageError, Position
 from annotations.language.forms import (
     UNKNOWN,
     Application,
     Constant,
     Form,
     Lambda,
+    Nonterminal,
     Variable,
+    Wildcard,
     depth,
     free_variables,
     head_predicate,
@@ -21,8 +22,8 @@ from annotations.language.forms import (
     to_template,
 )
 from annotations.language.forms.notations import tokens
-from annotations.language.limits import MAX_NESTING
-from annotations.language.symbols import Nonterminal, Wildcard
+from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.texts.limits import MAX_NESTING
 from tests.annotations.language.random_forms import forms
 
 FIND_BOWL = Application(

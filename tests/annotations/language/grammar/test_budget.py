@@ -4,7 +4,7 @@ from itertools import islice, pairwise
 
 import pytest
 
-from annotations.language.errors import LanguageError, Position
+from annotations.language.forms import Nonterminal, SymbolReader
 from annotations.language.grammar import (
     MAX_WORDS,
     Budget,
@@ -13,7 +13,7 @@ from annotations.language.grammar import (
     TooManyCombinations,
     read_productions,
 )
-from annotations.language.symbols import Nonterminal, SymbolReader
+from annotations.language.texts.errors import LanguageError, Position
 from tests.work import steps_of
 
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from annotations.language.decoding import MAX_FILES, read_folder
-from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import print_production, read_grammar_files
 from annotations.language.templates import Composition
 from annotations.language.templates.generator_folder import compose
+from annotations.language.texts.decoding import MAX_FILES, read_folder
+from annotations.language.texts.errors import LanguageError, Position
 
 
 def folder_of(**texts):

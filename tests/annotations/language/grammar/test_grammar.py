@@ -5,7 +5,7 @@ from itertools import islice
 import pytest
 from hypothesis import given
 
-from annotations.language.errors import LanguageError, Position
+from annotations.language.forms import Choice, Nonterminal, Text
 from annotations.language.grammar import (
     Grammar,
     Production,
@@ -13,7 +13,7 @@ from annotations.language.grammar import (
     read_production,
     read_productions,
 )
-from annotations.language.symbols import Choice, Nonterminal, Text
+from annotations.language.texts.errors import LanguageError, Position
 from tests.annotations.language.random_grammars import (
     EXPANSIONS,
     NAMES,

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.forms import read_form, to_template
+from annotations.language.forms import Text, read_form, read_wildcard, to_template
 from annotations.language.grounding import Anonymizer, Evidence, deanonymize, open_slots_as_json
 from annotations.language.grounding.deanonymizer import Deanonymized, Slot
 from annotations.language.grounding.utterance_mentions import find_alternatives
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import make_plan
-from annotations.language.symbols import Text, read_wildcard
 from annotations.language.templates.filling import fill_anonymized
+from annotations.language.world import Entity, Ontology
 
 TABLE = Ontology(
     (

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.grounding.anonymizer import Anonymized
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.world import Entity, Ontology
 from tests.annotations.language.sample_ontology import HOME
 
 PLAIN = Anonymizer(HOME)

@@ -14,9 +14,11 @@ from annotations.language.forms import (
     Constant,
     Form,
     Lambda,
+    Text,
     canonical_text,
     children,
     read_form,
+    read_wildcard,
     to_template,
     walk,
 )
@@ -28,7 +30,6 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.grounding.deanonymizer import Deanonymized
-from annotations.language.symbols import Text, read_wildcard
 from annotations.language.templates import Derivation, TemplateExpander, read_generator_folder
 from annotations.language.templates.filling import fill_anonymized
 from tests.annotations.language.ontology_files import read_ontology_folder

@@ -7,12 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.errors import LanguageError
-from annotations.language.forms import read_form, to_template
+from annotations.language.forms import (
+    Choice,
+    Symbol,
+    Text,
+    Wildcard,
+    read_form,
+    read_wildcard,
+    to_template,
+)
 from annotations.language.grounding import ground
 from annotations.language.grounding.grounding import Grounded
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import Choice, Symbol, Text, Wildcard, read_wildcard
+from annotations.language.texts.errors import LanguageError
+from annotations.language.world import Entity, Ontology
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.published import SHARED, needs_corpus
 

@@ -11,7 +11,6 @@ from hypothesis import given
 
 from annotations.language.forms import read_form
 from annotations.language.grounding import Anonymizer, deanonymize
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.plans import (
     ASK,
     ActionName,
@@ -24,6 +23,7 @@ from annotations.language.plans import (
     plan_schema,
     to_behavior_tree,
 )
+from annotations.language.world import Entity, Ontology
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.published import SHARED, needs_corpus
 from tests.annotations.language.random_forms import forms

@@ -7,11 +7,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.dialogue import DialogueManager
 from annotations.language.forms import Form, read_form
 from annotations.language.grounding import Anonymizer, Deanonymized, deanonymize
-from annotations.language.plans import ASK, COMMAND, Plan, make_plan, plan_schema, said_words
-from annotations.language.recipes import apply_recipes, default_book, join, joint_plan_schema
+from annotations.language.plans import (
+    ASK,
+    COMMAND,
+    DialogueManager,
+    Plan,
+    apply_recipes,
+    default_book,
+    join,
+    joint_plan_schema,
+    make_plan,
+    plan_schema,
+    said_words,
+)
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.sample_ontology import HOME
 

@@ -2,9 +2,7 @@
 
 import pytest
 
-from annotations.language.errors import LanguageError, Position
 from annotations.language.grammar import Budget, Grammar, TooManyCombinations, read_productions
-from annotations.language.predicates import infer_signatures
 from annotations.language.templates import (
     TaskCategory,
     TemplateChart,
@@ -13,6 +11,8 @@ from annotations.language.templates import (
     make_template,
     template_checker,
 )
+from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.world import infer_signatures
 from tests.work import steps_of
 
 GRAMMAR = Grammar(

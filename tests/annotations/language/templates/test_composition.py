@@ -6,11 +6,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from annotations.language.assistance.sides import format_form, format_pattern
-from annotations.language.errors import LanguageError
+from annotations.language.corpus.names import rename_nonterminal_in_pattern
 from annotations.language.forms import (
     canonical_text,
     loose_references,
+    places_in_pattern,
     read_form,
     to_corpus,
     to_template,
@@ -23,10 +23,6 @@ from annotations.language.grounding import (
     ground,
     with_values,
 )
-from annotations.language.names import rename_nonterminal_in_pattern
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import infer_signatures
-from annotations.language.symbols import places_in_pattern
 from annotations.language.templates import (
     Balance,
     Language,
@@ -44,6 +40,9 @@ from annotations.language.templates import (
     template_checker,
 )
 from annotations.language.templates.line_checks import line_problems
+from annotations.language.templates.sides import format_form, format_pattern
+from annotations.language.texts.errors import LanguageError
+from annotations.language.world import Entity, Ontology, infer_signatures
 from tests.annotations.language.random_grammars import FEW, TOKENS, small_grammars
 from tests.annotations.language.templates.test_expansion import small_templates
 

@@ -4,18 +4,19 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from annotations.language.errors import LanguageError
 from annotations.language.forms import (
     Application,
     Constant,
     Lambda,
+    Nonterminal,
     Variable,
+    Wildcard,
     canonical_text,
+    print_sequence,
     read_form,
     to_template,
 )
 from annotations.language.grammar import Grammar, read_productions
-from annotations.language.symbols import Nonterminal, Wildcard, print_sequence
 from annotations.language.templates import (
     GrammarExpansions,
     SemanticTemplate,
@@ -25,6 +26,7 @@ from annotations.language.templates import (
     read_template,
 )
 from annotations.language.templates.expansion import generation_size
+from annotations.language.texts.errors import LanguageError
 from tests.annotations.language.grammar.test_grammar import huge_grammar
 from tests.annotations.language.random_grammars import (
     FEW,

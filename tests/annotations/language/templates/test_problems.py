@@ -8,8 +8,8 @@ import pytest
 
 from annotations.language.forms import read_form
 from annotations.language.grammar import Budget, Grammar, read_productions
-from annotations.language.predicates import infer_signatures
 from annotations.language.templates import GrammarExpansions, read_template, template_checker
+from annotations.language.world import infer_signatures
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ from random import Random
 import pytest
 from hypothesis import assume, given
 
-from annotations.language.errors import LanguageError
 from annotations.language.grammar import Grammar, read_productions
 from annotations.language.templates import (
     EVERYTHING,
@@ -22,6 +21,7 @@ from annotations.language.templates import (
     read_template,
 )
 from annotations.language.templates.sampling import shuffled
+from annotations.language.texts.errors import LanguageError
 from tests.annotations.language.grammar.test_grammar import huge_grammar
 from tests.annotations.language.random_grammars import FEW, small_grammars
 from tests.annotations.language.templates.test_expansion import small_templates

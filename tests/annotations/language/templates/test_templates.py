@@ -2,12 +2,8 @@
 
 import pytest
 
-from annotations.language.errors import LanguageError, Position
-from annotations.language.forms import read_form
+from annotations.language.forms import Nonterminal, Wildcard, read_form
 from annotations.language.grammar import Grammar, read_productions
-from annotations.language.limits import MAX_NESTING
-from annotations.language.predicates import infer_signatures
-from annotations.language.symbols import Nonterminal, Wildcard
 from annotations.language.templates import (
     TaskCategory,
     generate,
@@ -18,6 +14,9 @@ from annotations.language.templates import (
 )
 from annotations.language.templates.template_checks import problems
 from annotations.language.templates.templates import read_templates
+from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.texts.limits import MAX_NESTING
+from annotations.language.world import infer_signatures
 from tests.annotations.language.grammar.test_grammar import huge_grammar
 
 GRAMMAR = Grammar(

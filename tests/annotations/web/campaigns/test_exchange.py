@@ -6,11 +6,11 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations import background
+from annotations.background.carrying_out_jobs import carry_out
 from annotations.campaigns.answering import save_answer
 from annotations.campaigns.campaign_files import MOST_TASKS
 from annotations.campaigns.moderation import accept
 from annotations.campaigns.tasks import begin
-from annotations.jobs.carrying_out import carry_out
 from annotations.models import Campaign, Job, Scope, Submission
 from tests.crowd_tables import results
 from tests.launched_campaigns import small_campaign

@@ -9,7 +9,7 @@ from zipfile import ZipFile
 import pytest
 
 from annotations.editing.edits import change
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.models import Predicate, SemanticTemplate
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.language.recipes import DEFAULT_BOOK, default_book, shipped_books
+from annotations.language.plans import DEFAULT_BOOK, default_book, shipped_books
 from annotations.models import Recipe
 from annotations.rows.from_rows import recipe_book_of
 from tests.notices import levels

@@ -5,12 +5,7 @@ from __future__ import annotations
 import jsonschema
 import pytest
 
-from annotations.language.recipes import (
-    DEFAULT_BOOK,
-    default_book,
-    shipped_books,
-    task_plan_schema,
-)
+from annotations.language.plans import DEFAULT_BOOK, default_book, shipped_books, task_plan_schema
 from annotations.rows.from_rows import recipe_book_of
 from tests.sample_world import fill_world
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from annotations.generation import kept_expansions
+from annotations.generation.freezing import freeze_split
 from annotations.language.templates import BoundedCache
 from annotations.models import SemanticTemplate
-from annotations.splits.freezing import freeze_split
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.models import SemanticTemplate, TaskCategory
 from tests.notices import levels
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.commenting import SUBJECTS, add_comment, mentioned_in
+from annotations.editing.commenting import SUBJECTS, add_comment, mentioned_in
 from annotations.editing.edits import delete
 from annotations.models import Comment, Membership, Notice, User, Utterance
 from annotations.models.editing import MOST_CHARACTERS_OF_COMMENT

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.checking.deletion_check import check_deletion
 from annotations.editing.edits import delete
+from annotations.generation.deletion_check import check_deletion
+from annotations.generation.freezing import freeze_split
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
-from annotations.splits.freezing import freeze_split
 from tests.annotations.generation.test_up_to_date import commands_of
 
 

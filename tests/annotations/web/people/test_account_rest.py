@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.commenting import SUBJECTS, add_comment
+from annotations.editing.commenting import SUBJECTS, add_comment
 from annotations.models import AuditEntry
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.generation.freezing import freeze_split
 from annotations.generation.generating import generate_pairs
 from annotations.labelling.collecting import collect
+from annotations.labelling.enqueuing import refill, set_share
+from annotations.labelling.item_answers import answer
 from annotations.models import SemanticTemplate, Utterance, WorkKind
-from annotations.queueing.enqueuing import refill, set_share
-from annotations.queueing.item_answers import answer
-from annotations.splits.freezing import freeze_split
 
 HOME = "worlds/home/"
 

@@ -9,10 +9,10 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations.background import claim
-from annotations.jobs.carrying_out import carry_out
-from annotations.language.ontology.competition_folder import LOCATIONS, NAMES, OBJECTS
+from annotations.background.carrying_out_jobs import carry_out
+from annotations.language.world.competition_folder import LOCATIONS, NAMES, OBJECTS
 from annotations.models import Entity, Job, JobKind
-from tests.annotations.language.ontology.test_competition_folder import FOLDER
+from tests.annotations.language.world.test_competition_folder import FOLDER
 
 PAGE, ROOMS_PAGE = "/w/home/import/competition/", "/w/home/ontology/rooms/"
 API = "worlds/home/import/competition/"

@@ -11,7 +11,7 @@ from django.test import Client
 from annotations.labelling.collecting import collect
 from annotations.models import World
 from annotations.models.worlds import Duty
-from tests.annotations.world_archive.packing import everything_of, members_of, pack
+from tests.annotations.exchange.packing import everything_of, members_of, pack
 
 
 @pytest.fixture

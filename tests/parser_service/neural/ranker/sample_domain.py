@@ -3,8 +3,7 @@
 import torch
 
 from annotations.language.forms import read_form
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import infer_signatures
+from annotations.language.world import Entity, Ontology, infer_signatures
 from parser_service.parsers.interface import Knowledge
 from tests.parser_service.neural.conftest import form, toy_pairs
 

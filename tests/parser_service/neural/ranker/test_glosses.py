@@ -2,8 +2,7 @@ from dataclasses import replace
 from random import Random
 
 from annotations.language.forms import read_form
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import infer_signatures
+from annotations.language.world import Entity, Ontology, infer_signatures
 from parser_service.neural.ranker.ranked_forms import glosses
 from parser_service.neural.ranker.slots import SlotFiller
 from tests.parser_service.parsers.new_forms.conftest import NAMED, OBJECT, ROOM, bring, find

@@ -8,7 +8,7 @@ import pytest
 import torch
 from transformers import BertConfig, BertModel
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.ranker.form_ranker import FORMS, SAVED, FormRanker
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.sentence_encoder.half_precision import rounded

@@ -1,6 +1,6 @@
 import pytest
 
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.world import Entity, Ontology
 from parser_service.neural.ranker.slots import SlotTerm
 
 HOME = Ontology(

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
-from annotations.language.ontology import Entity, Ontology
+from annotations.language.texts.errors import Refusal
+from annotations.language.world import Entity, Ontology
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.neural.ranker.steps import RankerTraining

@@ -2,8 +2,8 @@
 
 import pytest
 
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.symbols import DEFAULT_CLASSES, EntityClass
+from annotations.language.forms import DEFAULT_CLASSES, EntityClass
+from annotations.language.world import Entity, Ontology
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.ranker.form_ranker import values_of
 from parser_service.neural.ranker.unlisted_names import UnlistedNames

@@ -5,7 +5,7 @@ import torch
 from tokenizers.processors import TemplateProcessing
 from transformers import MPNetConfig, MPNetModel
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.sentence_encoder.encoder import LONGEST

@@ -5,7 +5,7 @@ from dataclasses import asdict
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqGloveElmo, Seq2SeqMiniLm
 from parser_service.neural.word_vectors.vector_cache import VectorCache
 from parser_service.parsers import pretrained_files

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.seq2seq.epochs import Training
 from parser_service.neural.seq2seq.seq2seq_parser import Seq2Seq
 from parser_service.parsers.interface import Cancelled, Pair

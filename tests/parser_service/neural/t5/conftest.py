@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from annotations.language.forms import read_form
-from annotations.language.predicates import infer_signatures
+from annotations.language.world import infer_signatures
 from parser_service.neural.t5.t5_parser import T5
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig

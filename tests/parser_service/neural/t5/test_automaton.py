@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from annotations.language.corpus import read_pairs
 from annotations.language.forms import (
+    DEFAULT_CLASSES,
     Application,
     Constant,
     canonical_text,
@@ -16,7 +17,7 @@ from annotations.language.forms import (
     read_form,
     to_corpus,
 )
-from annotations.language.predicates import (
+from annotations.language.world import (
     ArgumentKind,
     Predicate,
     PredicateKind,
@@ -25,7 +26,6 @@ from annotations.language.predicates import (
     infer_signatures,
     known_kinds,
 )
-from annotations.language.symbols import DEFAULT_CLASSES
 from parser_service.neural.t5.automaton import START, Automaton
 from parser_service.neural.t5.rules import Rules, length
 from parser_service.neural.t5.spelling import read, spell

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from annotations.language.forms import read_form
-from annotations.language.predicates import check_form, infer_signatures
+from annotations.language.world import check_form, infer_signatures
 from parser_service.parsers.interface import Knowledge
 from parser_service.parsers.written_forms import canonical
 from tests.parser_service.neural.t5.conftest import DECLARED, ODD, TWENTY, UTTERANCES, parser_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.t5.t5_parser import T5
 from parser_service.parsers.interface import Cancelled, Knowledge, Pair
 from tests.parser_service.neural.conftest import Recorder

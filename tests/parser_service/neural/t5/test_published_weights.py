@@ -6,7 +6,7 @@ import pytest
 import torch
 from safetensors.torch import load_file, save_file
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.t5.network import shared_weights
 from parser_service.neural.t5.t5_parser import T5
 from tests.parser_service.neural.conftest import Recorder

@@ -4,7 +4,7 @@ import pytest
 import torch
 from transformers import AutoModel, AutoTokenizer
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.word_vectors.contextual import TransformerWords, mean_by_word
 from tests.parser_service.neural.tiny_weights import write_bert, write_gpt
 

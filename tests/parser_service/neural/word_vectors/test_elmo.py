@@ -5,7 +5,7 @@ import numpy
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.word_vectors.elmo import Elmo
 from parser_service.neural.word_vectors.elmo_files import read_elmo_options
 from parser_service.neural.word_vectors.elmo_layers import spell

@@ -3,7 +3,7 @@ import gzip
 import pytest
 import torch
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.neural.word_vectors.glove import read_glove
 from tests.parser_service.neural.tiny_weights import write_glove
 

@@ -10,12 +10,12 @@ from random import Random
 
 import pytest
 
-from annotations.language.decoding import read_folder
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
 from annotations.language.grounding import HeardChange, HearingReader, applied
-from annotations.language.ontology import Entity, Ontology
 from annotations.language.templates import read_generator_files
-from annotations.language.text import normalise_line
-from annotations.worlds.shipped_worlds import SHIPPED_WORLDS
+from annotations.language.texts.decoding import read_folder
+from annotations.language.texts.text import normalise_line
+from annotations.language.world import Entity, Ontology
 from benchmarks.parsing.noise import KINDS
 from parser_service.parsers.interface import Candidate, Knowledge
 from parser_service.parsers.oracle import GrammarOracle

@@ -2,7 +2,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.hyperparameters.fields import (
     describe,
     hyperparameter,

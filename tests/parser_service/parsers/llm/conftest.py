@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import KEY, QUICK, installed, tiny_server
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from parser_service.parsers.llm.asker import Asker
 from parser_service.parsers.llm.protocol import Question
-from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import MODEL
 
 SCHEMA = {"type": "object", "properties": {"form": {"enum": ["a", "UNKNOWN"]}}}

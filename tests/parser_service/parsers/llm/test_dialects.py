@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.llm.asker import Asker
 from tests.parser_service.llm_server import fails, says
 from tests.parser_service.parsers.llm.questions import ask, question

@@ -10,12 +10,12 @@ from email.utils import format_datetime
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.interface import Cancelled
 from parser_service.parsers.llm.asker import Asker
 from parser_service.parsers.llm.exchange import NoAnswer, ServerRefusal
 from parser_service.parsers.llm.protocol import ModelAnswer
-from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import (
     QUICK,
     cuts_the_body,

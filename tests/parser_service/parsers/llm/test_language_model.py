@@ -6,10 +6,11 @@ import json
 
 import pytest
 
-from annotations.language.errors import Refusal
 from annotations.language.forms import read_form
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import (
+from annotations.language.texts.errors import Refusal
+from annotations.language.world import (
+    Entity,
+    Ontology,
     Predicate,
     PredicateKind,
     infer_signatures,

@@ -15,8 +15,7 @@ from annotations.language.forms import (
     read_form,
     walk,
 )
-from annotations.language.ontology import Entity, Ontology
-from annotations.language.predicates import infer_signatures
+from annotations.language.world import Entity, Ontology, infer_signatures
 from parser_service.parsers.llm.mending import Mender, tokens_in
 
 FORMS = [

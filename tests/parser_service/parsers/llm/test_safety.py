@@ -12,10 +12,10 @@ from shutil import which
 
 import pytest
 
-from annotations.language.errors import Refusal
+from annotations.language.texts.errors import Refusal
 from parser_service.parsers.llm import exchange
 from parser_service.parsers.llm.asker import Asker
-from parser_service.parsers.llm.server_address import ModelServer
+from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import KEY, QUICK, fails, says, sends, tiny_server
 from tests.parser_service.parsers.llm.questions import ask, question
 

@@ -10,14 +10,9 @@ from ipaddress import ip_address
 
 import pytest
 
-from parser_service.parsers.llm.server_address import (
-    ModelServer,
-    Patience,
-    is_this_machine,
-    problem_of,
-)
 from parser_service.parsers.pretrained_files import find_gaps
 from parser_service.parsers.registry import make_config
+from parser_service.parsers.server_address import ModelServer, Patience, is_this_machine, problem_of
 from tests.parser_service.llm_server import KEY, installed
 
 HERE = "http://127.0.0.1:8080/v1"
@@ -104,7 +99,7 @@ def test_the_row_says_that_there_is_no_server_and_no_other_row_does():
 def test_the_environment_is_where_it_all_comes_from():
     code = (
         "import django; django.setup()\n"
-        "from parser_service.parsers.llm.server_address import server\n"
+        "from parser_service.parsers.server_address import server\n"
         "each = server()\n"
         "print(each.url, each.key, each.may_be_remote, each.patience.answer, each.answers.name)"
     )

@@ -1,8 +1,8 @@
 import pytest
 
 from annotations.language.forms import read_form
-from annotations.language.predicates import check_form, infer_signatures
-from parser_service.parsers.new_forms.closure import CHANGES, close
+from annotations.language.world import check_form, infer_signatures
+from parser_service.parsers.closure import CHANGES, close
 from tests.parser_service.parsers.new_forms.conftest import (
     NAMED,
     OBJECT,

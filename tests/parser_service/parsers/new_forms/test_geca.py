@@ -1,5 +1,5 @@
+from parser_service.parsers.geca import geca
 from parser_service.parsers.interface import Pair
-from parser_service.parsers.new_forms.geca import geca
 from tests.parser_service.parsers.new_forms.conftest import (
     OBJECT,
     PLACE,

@@ -7,14 +7,13 @@ import pytest
 
 from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, read_production
-from annotations.language.ontology import Ontology
-from annotations.language.predicates import infer_signatures
 from annotations.language.templates import TaskCategory, read_template
+from annotations.language.world import Ontology, infer_signatures
 from parser_service.neural.ranker.ranked_forms import collect
+from parser_service.parsers import closure, geca, generation
+from parser_service.parsers.closure import close, read_forms
+from parser_service.parsers.generation import generate_candidates
 from parser_service.parsers.interface import REFUSAL, Cancelled, Knowledge, Pair
-from parser_service.parsers.new_forms import closure, geca, generation
-from parser_service.parsers.new_forms.closure import close, read_forms
-from parser_service.parsers.new_forms.generation import generate_candidates
 
 VERBS = [f"verb{number}" for number in range(12)]
 LOOKS = [f"look{number}" for number in range(12)]
@@ -79,7 +78,7 @@ def test_a_closure_of_many_forms_is_bounded_and_visits_all_of_them_evenly(monkey
 
 
 def test_of_very_many_parts_the_most_frequent_are_put_in(monkeypatch):
-    monkeypatch.setattr("parser_service.parsers.new_forms.contexts.MOST_PARTS", 3)
+    monkeypatch.setattr("parser_service.parsers.contexts.MOST_PARTS", 3)
     looks = ["( find ( lambda $1 e ( look0 $1 ) ) )"] * 2
     looks += [f"( find ( lambda $1 e ( look{n} $1 ) ) )" for n in range(1, 9)]
     read = list(read_forms(looks))

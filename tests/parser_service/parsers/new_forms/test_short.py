@@ -12,7 +12,7 @@ from annotations.language.forms import (
     Variable,
     read_form,
 )
-from parser_service.parsers.new_forms.short import lengthen, name_of, shorten
+from parser_service.parsers.short import lengthen, name_of, shorten
 
 NAMES = st.text('aL:$#?/() "é_', min_size=1, max_size=4).map(lambda name: f"p{name}")
 LEAVES = st.one_of(

@@ -1,5 +1,5 @@
 from annotations.language.forms import read_form
-from annotations.language.predicates import (
+from annotations.language.world import (
     ArgumentKind,
     Predicate,
     PredicateKind,
@@ -7,8 +7,8 @@ from annotations.language.predicates import (
     check_form,
     infer_signatures,
 )
-from parser_service.parsers.new_forms.pool import SURE
-from parser_service.parsers.new_forms.unseen import unseen
+from parser_service.parsers.pool import SURE
+from parser_service.parsers.unseen import unseen
 from tests.parser_service.parsers.new_forms.conftest import NAMED, OBJECT, ROOM, bring, find
 
 LAMBDA, LOCATION, VARIABLE = ArgumentKind.LAMBDA, "location", ArgumentKind.VARIABLE

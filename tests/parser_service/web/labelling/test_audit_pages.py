@@ -6,13 +6,13 @@ import pytest
 from django.core.management import call_command
 from django.urls import reverse
 
-from annotations.label_audit.audit_findings import store_findings
-from annotations.label_audit.label_decisions import decide
-from annotations.language.label_errors import Reason
+from annotations.generation.freezing import freeze_split
+from annotations.labelling.audit_findings import store_findings
+from annotations.labelling.giving import next_item
+from annotations.labelling.label_decisions import decide
+from annotations.language.corpus.label_errors import Reason
 from annotations.models import AuditFinding, FindingStatus, Job, JobKind, Paraphrase
-from annotations.queueing.giving import next_item
-from annotations.splits.freezing import freeze_split
-from parser_service.label_audit.precision import precision_of
+from parser_service.labelling.precision import precision_of
 from tests.doubted_labels import FEMALE, GO, MALE, doubt, say
 from tests.notices import levels
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from annotations.label_audit.audit_findings import store_findings
+from annotations.labelling.audit_findings import store_findings
 from annotations.models import Job
 from tests.doubted_labels import FEMALE, MALE, doubt, say
 

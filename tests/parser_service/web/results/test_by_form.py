@@ -7,9 +7,9 @@ import re
 import pytest
 
 from gpsr_site.overview.best_runs import best_runs
-from parser_service.promotions.promoting import promote
-from parser_service.promotions.score_evidence import compare_scores
-from parser_service.reports.run_report import run_report
+from parser_service.reviews.run_report import run_report
+from parser_service.runs.promoting import promote
+from parser_service.runs.score_evidence import compare_scores
 from tests.parser_service.web.results.test_result_pages import by_form
 from tests.sample_world import scored_run
 

@@ -13,8 +13,8 @@ from parser_service.analysis.encoded_labels import encode
 from parser_service.analysis.outcomes import encode_clusters
 from parser_service.analysis.slicing import accuracy_by, form_depths, head_predicates, length_bins
 from parser_service.models import ErrorCategory, Prediction, Review, Slice
-from parser_service.runs.training.split_pairs import cluster_of
-from parser_service.slices.saving import save_slice
+from parser_service.results.saving import save_slice
+from parser_service.runs.split_pairs import cluster_of
 from tests.sample_world import scored_run
 
 PAGE = "/w/home/compare/"

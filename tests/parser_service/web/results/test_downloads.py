@@ -17,7 +17,7 @@ from parser_service.models import TrainingRun
 from parser_service.parsers.registry import config_values, make_config
 from parser_service.results.latex import escape
 from parser_service.results.table_parts import MAY_KNOW_CORPORA
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from tests.parser_service.made_up import make_split
 from tests.parser_service.web.results.conftest import equivalents, seeds
 from tests.sample_world import scored_run

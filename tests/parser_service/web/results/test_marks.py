@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from parser_service.models import TrainingRun
-from parser_service.promotions.promoting import promote
-from parser_service.reports.run_report import run_report
 from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA
+from parser_service.reviews.run_report import run_report
+from parser_service.runs.promoting import promote
 from tests.sample_world import scored_run
 
 BEHIND_A_NAME = f">{MARK}</abbr></sup>"

@@ -14,7 +14,7 @@ from parser_service.analysis.outcomes import outcomes_of
 from parser_service.analysis.scores import Judgement
 from parser_service.models import TrainingRun
 from parser_service.results.accuracy_tables import accuracy_tables
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from tests.parser_service.made_up import make_split
 from tests.parser_service.web.results.conftest import seeds
 from tests.sample_world import scored_run

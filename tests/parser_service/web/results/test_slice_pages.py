@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from parser_service.models import Slice
-from parser_service.slices.saving import save_slice
+from parser_service.results.saving import save_slice
 from tests.notices import levels
 
 PAGE = "/w/home/slices/"

@@ -9,7 +9,7 @@ import pytest
 from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import TrainingRun
 from parser_service.results.learning_curves import curves_url
-from parser_service.runs.requests.learning_curve import SHARES
+from parser_service.runs.learning_curve import SHARES
 from tests.notices import levels
 from tests.parser_service.made_up import make_split
 from tests.sample_world import scored_run

@@ -11,7 +11,7 @@ import pytest
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.registry import PARSERS
-from parser_service.runs.requests import run_requests
+from parser_service.runs import run_requests
 from parser_service.web.runs.new_run_pages import picker_of
 from tests.parser_service.made_up import make_split
 from tests.parser_service.web.runs.forms_of_pages import PageForm

@@ -14,8 +14,7 @@ from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import RunEvent, TrainingRun, Worker
 from parser_service.parsers.interface import EpochReport
 from parser_service.parsers.registry import PARSERS, config_fields
-from parser_service.runs import lifecycle
-from parser_service.runs.requests import run_requests
+from parser_service.runs import lifecycle, run_requests
 from tests.notices import levels
 from tests.parser_service.made_up import make_split
 from tests.sample_world import scored_run

@@ -66,7 +66,7 @@ def test_what_cannot_be_trained_is_refused(change, field, call, sample):
 
 
 def test_too_many_within_the_hour_are_refused(call, sample, monkeypatch):
-    monkeypatch.setattr("parser_service.runs.requests.starting.STARTED_RUNS", Rate("few", 0, 60))
+    monkeypatch.setattr("parser_service.runs.starting.STARTED_RUNS", Rate("few", 0, 60))
     sent = {"split": sample.split.pk, "parser": "knn", "seed": 7}
     assert call("post", "runs/", sent).status_code == 429
 

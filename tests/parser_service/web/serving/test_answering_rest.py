@@ -7,12 +7,12 @@ import json
 import jsonschema
 import pytest
 
-from annotations.importing.generator_import import import_generator
+from annotations.exchange.generator_import import import_generator
 from annotations.language.forms import SEQUENCE, Application, read_form
-from annotations.language.recipes import joint_plan_schema
+from annotations.language.plans import joint_plan_schema
 from annotations.models import ApiToken
 from parser_service.models import Answering, AnsweringOrder, Promotion
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.preparing import MOST_ALTERNATIVES
 from parser_service.web.serving.parsing_rest import (
     CandidateSerializer,

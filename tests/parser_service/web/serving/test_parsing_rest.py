@@ -10,13 +10,13 @@ from datetime import timedelta
 import pytest
 
 from annotations import background
-from annotations.importing.generator_import import import_generator
-from annotations.jobs.carrying_out import carry_out
-from annotations.jobs.files import results_folder
-from annotations.jobs.sweeping import sweep
+from annotations.background.carrying_out_jobs import carry_out
+from annotations.background.job_files import results_folder
+from annotations.background.sweeping import sweep
+from annotations.exchange.generator_import import import_generator
 from annotations.models import ApiToken, Job
 from annotations.web.rest.streaming import BrokenOff
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.batch_requests import MOST_AT_ONCE
 from parser_service.serving.shelf import Shelf
 from parser_service.web.serving import parsing_rest

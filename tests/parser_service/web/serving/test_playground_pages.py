@@ -20,7 +20,7 @@ from parser_service.labelling.label_candidates import PERSON, candidates_for
 from parser_service.labelling.parser_proposals import propose
 from parser_service.parsers.knn import NearestNeighbour
 from parser_service.parsers.registry import ORACLE
-from parser_service.promotions.promoting import promote
+from parser_service.runs.promoting import promote
 from parser_service.serving.parser_client import AWAY
 from parser_service.templatetags.provenance import cut_in_words
 from parser_service.templatetags.steps import referents

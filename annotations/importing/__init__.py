@@ -1,1 +1,0 @@
-"""Verb: import files, all or nothing. A second import of the same files changes nothing."""

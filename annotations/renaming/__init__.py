@@ -1,1 +1,0 @@
-"""Rename an entity, a nonterminal or a predicate wherever its world names it."""

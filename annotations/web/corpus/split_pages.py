@@ -1,0 +1,155 @@
+"""Frozen splits, on which parsers are trained and tested, and their examples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from django.contrib import messages
+from django.http import HttpResponse
+from django.shortcuts import get_object_or_404, redirect, render
+
+from annotations.generation.freezing import as_items, freeze_split, plan_split, unresolved_prompts
+from annotations.generation.renewing import changes_since, freeze_anew, is_from_import, last_of
+from annotations.generation.split_statistics import (
+    counts_of,
+    counts_of_planned,
+    leakage_of,
+    near_duplicates_of,
+)
+from annotations.labelling.label_changes import examples_before
+from annotations.language.corpus import Criterion
+from annotations.language.texts import LanguageError
+from annotations.models import Duty, Example, Split, World
+from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.allowances import may_take_long
+from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
+from annotations.showing.listing import Listing, Sort, render_list
+from annotations.web.corpus.split_filters import (
+    MOST_CHANGES,
+    MOST_SHOWN,
+    ExampleFilters,
+    SplitFilters,
+)
+from annotations.web.corpus.split_forms import SplitForm
+from annotations.web.forms import posted
+
+SORTS = {
+    "position": Sort("No.", "id", is_number=True),
+    "utterance": Sort("Utterance", "utterance"),
+    "category": Sort("Task category", "task_category"),
+}
+SPLIT_SORTS = {"created": Sort("Frozen", "-created_at"), "name": Sort("Split", "name")}
+# Examples that are compared with the corpus of today before the page is shown.
+MOST_COMPARED = 500
+
+
+@world_view(Duty.VIEW)
+def splits(request: WorldRequest, world: World) -> HttpResponse:
+    """List the splits with the number of their pairs by part and source."""
+    listing = Listing(request, SplitFilters, world.splits.select_related("created_by"), SPLIT_SORTS)
+    counts = counts_of(listing.rows)
+    context = {"listing": listing, "rows": [(row, counts[row.pk]) for row in listing.rows]}
+    return render_list(request, "annotations/corpus/splits.html", context)
+
+
+@may_take_long
+@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+def split_new(request: WorldRequest, world: World) -> HttpResponse:
+    """Show the form that freezes a split; its other button only previews the counts."""
+    initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
+    form = SplitForm(posted(request), initial=initial)
+    context: dict[str, Any] = {"form": form}
+    if form.is_bound and form.is_valid():
+        try:
+            if "freeze" not in request.POST:
+                planned = plan_split(world, **form.choice)
+                context["counts"] = counts_of_planned(planned)
+                if form.choice["criterion"] == Criterion.SOURCE_COMMAND:
+                    context["unresolved"] = sorted(unresolved_prompts(as_items(planned)).values())
+            else:
+                name = form.cleaned_data["name"]
+                frozen = freeze_split(world, name, by=request.user, **form.choice)
+                return redirect("split", world=world.name, pk=frozen.pk)
+        except LanguageError as error:
+            form.add_error(None, str(error))
+    return render(request, "annotations/corpus/split_new.html", context)
+
+
+@world_view(Duty.VIEW)
+def split(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Show one split: its parts, the overlap between them, its examples."""
+    row = get_object_or_404(
+        Split.objects.select_related("created_by", "follows", "world"), world=world, pk=pk
+    )
+    newest, counts = last_of(row), counts_of([row])[row.pk]
+    context: dict[str, Any] = {
+        "split": row,
+        "newest": newest if newest != row else None,
+        "counts": counts,
+        "leakage": leakage_of(row),
+        "wrong": examples_before(row).count(),
+        "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
+    }
+    if newest == row and sum(each.total for each in counts) <= MOST_COMPARED:
+        context |= {"is_compared": True, **_changes_of(row)}
+    return render_list(request, "annotations/corpus/split.html", context)
+
+
+@world_view(Duty.VIEW)
+def split_changes(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Preview freezing a split anew. The page of a large split loads this part later."""
+    row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
+    context = {"split": row, **_changes_of(row)}
+    return render(request, "annotations/corpus/_split_changes.html", context)
+
+
+def _changes_of(row: Split) -> dict[str, object]:
+    """Return what ``_split_changes.html`` shows of a split."""
+    try:
+        changed: dict[str, object] = {"changes": changes_since(row)}
+    except LanguageError as error:
+        changed = {"refusal": error.problem}
+    return {"most": MOST_CHANGES, "is_from_import": is_from_import(row), **changed}
+
+
+@may_take_long
+@world_view(Duty.ANNOTATE, WRITE)
+def split_renew(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """Freeze a split anew from the corpus of today, and show the new one."""
+    row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
+    try:
+        renewed = freeze_anew(row, request.user)
+    except LanguageError as error:
+        messages.error(request, str(error))
+        return redirect("split", world=world.name, pk=pk)
+    messages.success(request, f"Frozen anew as {renewed}. {row} stays as it was.")
+    return redirect("split", world=world.name, pk=renewed.pk)
+
+
+@world_view(Duty.VIEW)
+def example(request: WorldRequest, world: World, split: int, pk: int) -> HttpResponse:
+    """Show one example of a split, and the command and paraphrase that it was copied from."""
+    rows = Example.objects.filter(split__world=world, split=split).select_related("split__world")
+    row = get_object_or_404(rows, pk=pk)
+    context = {
+        "row": row,
+        "command": command_of_example(row),
+        "paraphrase": paraphrase_of_example(row),
+        "logical_form": logical_form_of(world.pk, row.logical_form),
+    }
+    return render(request, "annotations/corpus/example.html", context)
+
+
+@world_view(Duty.VIEW)
+def near_duplicates(request: WorldRequest, world: World, pk: int) -> HttpResponse:
+    """List near duplicates of training utterances: a part of the split's page, loaded when opened."""
+    row = get_object_or_404(Split.objects.select_related("world"), world=world, pk=pk)
+    context: dict[str, object] = {"most": MOST_SHOWN}
+    try:
+        context["parts"] = [
+            (each.leak, each.duplicates[:MOST_SHOWN], len(each.duplicates))
+            for each in near_duplicates_of(row)
+        ]
+    except LanguageError as error:
+        context["refusal"] = error.problem
+    return render(request, "annotations/corpus/_near_duplicates.html", context)

@@ -1,1 +1,0 @@
-"""What the robot of a world needs of it: names of actions, and which words of an utterance go where."""

@@ -1,1 +1,0 @@
-"""What a worker does with a run that it has claimed: train its parser, evaluate it, and report meanwhile."""

@@ -1,0 +1,132 @@
+"""Try a text on runs: somebody edits an utterance and sees each answer change."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlencode
+
+from django.http import HttpResponse, QueryDict
+from django.shortcuts import render
+from django.urls import reverse
+from django.views.decorators.cache import never_cache
+from django_htmx.http import replace_url
+
+from annotations.models import Duty, Example, World
+from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.showing.paging import number_in
+from parser_service.analysis.probe_texts import PAPER_PROBES
+from parser_service.models import TrainingRun, Tryout
+from parser_service.reviews.tryout_answers import MOST_TEXT, ask, request_answers
+from parser_service.serving.default_runs import opening_run
+from parser_service.web.results.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
+
+MOST_OFFERED = 30
+KEYS = (("1–6", "take a text of the paper"),)
+
+
+@dataclass(frozen=True, slots=True)
+class TriedAnswer:
+    """What a run answers to the text; ``before`` is its form for the text before, None where not known.
+
+    ``answers`` is None while the run has not answered; ``problem`` says why it cannot.
+    """
+
+    run: TrainingRun
+    answers: list[dict[str, Any]] | None
+    problem: str
+    before: str | None
+
+    @property
+    def form(self) -> str:
+        return self.answers[0]["form"] if self.answers else ""
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the answer is to the beginning of the text alone."""
+        return any(each.get("is_cut") for each in self.answers or ())
+
+    @property
+    def has_changed(self) -> bool:
+        return self.answers is not None and self.before not in (None, self.form)
+
+
+@world_view(Duty.VIEW)
+def tryout(request: WorldRequest, world: World) -> HttpResponse:
+    """Show the text and the runs that the URL names; the answers come when the page has loaded."""
+    key = number_in(request.GET.get("example", ""))
+    example = Example.objects.filter(split__world=world, pk=key).first() if key else None
+    text = _text_of(request.GET) or (example.utterance if example else "")
+    chosen = asked_runs(request.GET, world) or _usual_runs(world)
+    choices = list(dict.fromkeys([*chosen, *runs_to_choose(world, MOST_OFFERED)]))
+    context = {
+        "text": text,
+        "example": example,
+        "chosen": chosen,
+        "choices": choices,
+        "paper_texts": [probe.text for probe in PAPER_PROBES],
+        "most_text": MOST_TEXT,
+        "most_runs": MOST_RUNS,
+        "page_keys": KEYS,
+        "is_first": bool(text and chosen),
+    }
+    return render(request, "parser_service/results/tryout.html", context)
+
+
+@never_cache
+@world_view(Duty.VIEW, WRITE)
+def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
+    """Ask the chosen runs about the text, and show what they have answered.
+
+    With ``waiting`` in the URL nothing new is asked: the page looks for answers that were not there yet.
+    """
+    text, runs = _text_of(request.POST), asked_runs(request.POST, world)
+    if "waiting" in request.GET:
+        row = Tryout.objects.filter(world=world, person=request.user).first()
+        if row is not None:
+            request_answers(row)  # the job may have ended before it saw the text
+    else:
+        row = ask(world, request.user, text, runs) if text and runs else None
+    context = {"tryout": row, "answers": _answers_of(row, world) if row else [], "text": text}
+    response = render(request, "parser_service/results/_tryout_answers.html", context)
+    if "waiting" in request.GET:
+        return response
+    query = {"run": request.POST.getlist("run"), "text": text}
+    if example := request.POST.get("example", ""):
+        query["example"] = example
+    address = reverse("tryout", kwargs={"world": world.name})
+    return replace_url(response, f"{address}?{urlencode(query, doseq=True)}")
+
+
+def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
+    runs = world.runs.select_related("split").in_bulk(row.runs)
+    before = row.before.get("answers", {})
+    shown = []
+    for key in row.runs:
+        found = row.answers.get(str(key), {})
+        earlier = before.get(str(key), {}).get("answers")
+        if key in runs:
+            shown.append(
+                TriedAnswer(
+                    run=runs[key],
+                    answers=found.get("answers"),
+                    problem=found.get("problem", ""),
+                    before=None if earlier is None else (earlier or [{"form": ""}])[0]["form"],
+                )
+            )
+    return shown
+
+
+def _text_of(query: QueryDict) -> str:
+    return " ".join(query.get("text", "").replace("\0", "").split())[:MOST_TEXT]
+
+
+def _usual_runs(world: World) -> list[TrainingRun]:
+    """Return the run that pages open on, and the newest ones of other parsers on its split."""
+    opening = opening_run(world)
+    if opening is None:
+        return []
+    runs = {opening.parser: opening}
+    for run in world.runs.succeeded().filter(split=opening.split_id).order_by("-pk"):
+        runs.setdefault(run.parser, run)
+    return list(runs.values())[:MOST_RUNS]

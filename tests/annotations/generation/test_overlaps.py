@@ -1,0 +1,76 @@
+"""How much of what a split's validation part asks for its training part has."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from annotations.generation.overlaps import new_form_share, overlaps_of
+from annotations.language.corpus import FormOverlap, Overlap, overlap_of, together
+from annotations.models import Example, Split, World
+
+COUNTS = st.dictionaries(st.sampled_from("abcdefgh"), st.integers(1, 50))
+
+
+@given(COUNTS, COUNTS)
+def test_new_forms_are_those_that_nothing_was_taught_of(asked, taught):
+    overlap = overlap_of(asked, taught)
+    assert overlap.examples == sum(asked.values())
+    assert overlap.new_forms == len(set(asked) - set(taught))
+    assert 0 <= overlap.new_form_share <= 1
+    assert (overlap.new_form_share == 0) == (set(asked) <= set(taught))
+
+
+def test_the_larger_of_both_shares_counts():
+    few_pairs_of_new_forms = overlap_of({"a": 9, "b": 1}, {"a": 1})
+    many = overlap_of({"a": 1, "b": 1, "c": 8}, {"a": 1, "b": 1})
+    assert (few_pairs_of_new_forms.new_form_share, many.new_form_share) == (0.5, 0.8)
+    assert Overlap().new_form_share == Overlap().new_command_share == 0
+    both = together([few_pairs_of_new_forms, many])
+    assert (len(both.forms), both.examples, both.examples_of_new_forms) == (5, 20, 9)
+
+
+@pytest.fixture
+def split(world: World) -> Split:
+    made = Split.objects.create(world=world, name="s", criterion="command", content_hash="0" * 64)
+    rows = [
+        ("train", "generated", "go", "go there", "go there"),
+        ("train", "generated", "go", "go now", "go now"),
+        ("train", "paraphrased", "bring", "fetch it", "bring it"),
+        ("validation", "generated", "go", "go back", "go back"),
+        ("validation", "generated", "find", "find it", "find it"),
+        ("validation", "paraphrased", "bring", "get it", "bring it"),
+        ("validation", "paraphrased", "bring", "hand it over", "give it"),
+        ("validation", "said", "bring", "i want it", ""),
+        ("test", "generated", "say", "say it", "say it"),
+    ]
+    Example.objects.bulk_create(
+        Example(
+            split=made,
+            position=position,
+            part=part,
+            source=source,
+            logical_form=form,
+            utterance=text,
+            source_command=command,
+        )
+        for position, (part, source, form, text, command) in enumerate(rows)
+    )
+    return made
+
+
+def test_forms_and_commands_are_counted_by_source(split, django_assert_num_queries):
+    with django_assert_num_queries(2):
+        overlaps = overlaps_of(split)
+    assert overlaps == {
+        "generated": Overlap((FormOverlap(1, 0), FormOverlap(1, 2))),
+        "paraphrased": Overlap((FormOverlap(2, 1),), new_commands=1),
+        "said": Overlap((FormOverlap(1, 1),)),
+    }
+
+
+def test_the_share_is_that_of_all_sources_together(split):
+    assert new_form_share(split) == 0.25  # one of four forms, one of five pairs
+    split.examples.filter(part="train").delete()
+    assert new_form_share(split) == 1

@@ -1,1 +1,0 @@
-from tests.parser_service.dialogues.conftest import parse_server, shelf  # noqa: F401
