@@ -103,7 +103,12 @@ KINDS = {
 
 def kind_of(row: Editable) -> EditableKind:
     """Return the kind of ``row``."""
-    return next(kind for kind in KINDS.values() if kind.model is type(row))
+    return kind_of_model(type(row))
+
+
+def kind_of_model(model: type[Editable]) -> EditableKind:
+    """Return the kind of the rows of ``model``."""
+    return next(kind for kind in KINDS.values() if kind.model is model)
 
 
 def label_of(field: str) -> str:

@@ -26,10 +26,13 @@ from annotations.models import Duty, Scope, SemanticTemplate
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.stored_problems import as_json
 from annotations.showing.paging import LARGEST_INTEGER
-from annotations.web.description.predicate_rest import NewPredicate, PredicateNoun
-from annotations.web.description.production_rest import NewProduction, ProductionNoun
+from annotations.web.description.predicate_pages import PREDICATES
+from annotations.web.description.predicate_rest import NewPredicate
+from annotations.web.description.production_pages import PRODUCTIONS
+from annotations.web.description.production_rest import NewProduction
 from annotations.web.description.template_forms import consequences_of_form
-from annotations.web.description.template_rest import TemplateChange, TemplateNoun
+from annotations.web.description.template_rest import TemplateChange, TemplateRoute
+from annotations.web.editing.noun_rest import NounRoute
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import ProblemItemSerializer, refusal_of_form
@@ -137,7 +140,7 @@ class Check(WorldRoute):
         return get_object_or_404(self.rows(), pk=key) if key else None
 
 
-class CheckTemplate(TemplateNoun, Check):
+class CheckTemplate(TemplateRoute, Check):
     """Checks a template, and says what storing it would do."""
 
     @extend_schema(request=TemplateToCheck, responses={200: CheckedTemplate})
@@ -153,13 +156,15 @@ class CheckTemplate(TemplateNoun, Check):
             "english": checked.gloss,
             "commands": checked.size,
             "samples": [{"text": each.text, "english": each.gloss} for each in samples],
-            "consequences": show_consequences(consequences_of_form(self.world, form, row)),
+            "consequences": show_consequences(consequences_of_form(form)),
         }
         return Response(answer)
 
 
-class CheckProduction(ProductionNoun, Check):
+class CheckProduction(NounRoute, Check):
     """Checks a line of the grammar, and says what storing it would do."""
+
+    noun = PRODUCTIONS
 
     @extend_schema(request=ProductionToCheck, responses={200: CheckedProductionSerializer})
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
@@ -182,8 +187,10 @@ class CheckProduction(ProductionNoun, Check):
         return Response(answer)
 
 
-class CheckPredicate(PredicateNoun, Check):
+class CheckPredicate(NounRoute, Check):
     """Says a predicate in English, and names the templates that it would break."""
+
+    noun = PREDICATES
 
     @extend_schema(request=PredicateToCheck, responses={200: CheckedPredicateSerializer})
     def post(self, request: ApiRequest, **kwargs: object) -> Response:

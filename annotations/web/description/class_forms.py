@@ -6,15 +6,20 @@ from typing import Any
 
 from django import forms
 
-from annotations.editing.once_keys import new_key
 from annotations.language.forms import HUES, MAX_CLASS_WORDS, MAX_TOKEN, MOST_CLASSES, require_token
 from annotations.language.texts import LanguageError, Position, require_writable
-from annotations.models import EntityClass, World
+from annotations.models import EntityClass
+from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import sentence_of
 
 
-class EntityClassForm(forms.Form):
+class EntityClassForm(NounForm):
     """A class of entities. The token of a stored one does not change: templates, forms and commands have it."""
+
+    model = EntityClass
+    fixed = ("token",)
+    edited = ("singular", "plural", "said", "hue", "is_closed")
+    key = "token"
 
     token = forms.CharField(
         max_length=MAX_TOKEN,
@@ -38,14 +43,6 @@ class EntityClassForm(forms.Form):
         help_text="All members are listed, and each is a description or a sentence, such as “waving”. "
         "Members of other classes are nouns, which also come in the plural.",
     )
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
-
-    def __init__(self, world: World, row: EntityClass | None, *args: Any, **kwargs: Any):
-        super().__init__(*args, **kwargs)
-        self.world = world
-        self.row = row
-        self.fields["token"].disabled = row is not None
 
     def clean_token(self) -> str:
         token = str(self.cleaned_data["token"])
@@ -71,14 +68,6 @@ class EntityClassForm(forms.Form):
         return cleaned
 
     @property
-    def values(self) -> dict[str, Any]:
-        """The values to store beside the token."""
-        return {
-            name: self.cleaned_data[name]
-            for name in ("singular", "plural", "said", "hue", "is_closed")
-        }
-
-
-def initial_values(row: Any) -> dict[str, Any]:
-    """Return what the fields of the form show for ``row``."""
-    return {name: getattr(row, name) for name in (*EntityClass.edited_fields, "version")}
+    def repeated(self) -> str:
+        is_there = self.world.entity_classes.filter(token=self.cleaned_data["token"]).exists()
+        return "There is a class of this token already. Change that one." if is_there else ""

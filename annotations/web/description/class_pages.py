@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from hashlib import sha256
+from typing import Any
 
-from django.contrib import messages
-from django.core.exceptions import ValidationError
 from django.db.models import QuerySet
 from django.http import HttpResponse
 from django.http.response import HttpResponseBase
-from django.shortcuts import redirect, render
+from django.shortcuts import render
 from django.utils.cache import get_conditional_response, patch_cache_control
 
-from annotations.editing.edits import Overtaken, add
 from annotations.generation.class_uses import count_uses
 from annotations.models import Duty, Entity, EntityClass, World
-from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
-from annotations.rows.row_kinds import KINDS
-from annotations.web.description.class_forms import EntityClassForm, initial_values
-from annotations.web.editing.merge_pages import merge_page, save_edit
-from annotations.web.forms import posted
+from annotations.people.access import WorldRequest, world_view
+from annotations.web.description.class_forms import EntityClassForm
+from annotations.web.editing.nouns import Noun
 
 
 @world_view(Duty.VIEW)
@@ -30,38 +27,17 @@ def entity_classes(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/entity_classes.html", {"rows": rows})
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def entity_class(request: WorldRequest, world: World, pk: int) -> HttpResponse:
-    """Show a class and what uses it. Annotators change it."""
-    row, is_there = KINDS["entity_class"].row_or_last_known(world, pk)
-    if not is_there and request.method != "POST":
-        return redirect("history", world=world.name, kind="entity_class", pk=pk)
-    form = EntityClassForm(world, row, posted(request), initial=initial_values(row))
-    if request.method == "POST" and form.is_valid():
-        try:
-            row = save_edit(request, row, form, form.values)
-        except Overtaken as clash:
-            return merge_page(request, row, form, clash, initial_values)
-        messages.success(request, f"Saved as version {row.version}.")
-        return redirect("entity_class", world=world.name, pk=pk)
-    context = {"row": row, "form": form, "uses": count_uses(row)}
-    return render(request, "annotations/description/entity_class.html", context)
+class EntityClassNoun(Noun):
+    form = EntityClassForm
+    template = "annotations/description/entity_class.html"
+
+    def context(
+        self, request: WorldRequest, world: World, row: Any | None, form: EntityClassForm
+    ) -> Mapping[str, Any]:
+        return {"uses": count_uses(row)} if row else {}
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def entity_class_new(request: WorldRequest, world: World) -> HttpResponse:
-    """Add a class."""
-    form = EntityClassForm(world, None, posted(request))
-    if request.method == "POST" and form.is_valid():
-        unsaved = EntityClass(world=world, token=form.cleaned_data["token"], **form.values)
-        try:
-            row = add(unsaved, request.user, form.cleaned_data["once"])
-        except ValidationError:
-            form.add_error("token", "There is a class of this token already. Edit that one.")
-        else:
-            messages.success(request, f"Added {row.token}.")
-            return redirect("entity_class", world=world.name, pk=row.pk)
-    return render(request, "annotations/description/entity_class.html", {"form": form})
+ENTITY_CLASSES = EntityClassNoun()
 
 
 @world_view(Duty.VIEW)

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 from django import forms
 
 from annotations.editing.once_keys import new_key
 from annotations.language.corpus import require_entity_name
-from annotations.language.texts import MAX_ENTITY, LanguageError, Position, require_writable
+from annotations.language.texts import (
+    MAX_ENTITY,
+    LanguageError,
+    Position,
+    Problem,
+    require_writable,
+)
 from annotations.language.world import Additions, additions_to, read_entities
 from annotations.language.world import Entity as EntityValue
-from annotations.models import Editable, Entity, Ontology, World
+from annotations.models import Entity, Ontology, World
 from annotations.rows.from_rows import classes_of, ontology_of
 from annotations.rows.row_kinds import as_text
+from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import sentence_of
 
 
@@ -54,8 +63,13 @@ class AttributeLinesField(forms.CharField):
         return attributes
 
 
-class EntityForm(forms.Form):
+class EntityForm(NounForm):
     """One entity. The name of a stored one changes only by renaming."""
+
+    model = Entity
+    fixed = ("text",)
+    edited = ("entity_class", "aliases", "attributes")
+    key = "text"
 
     entity_class = forms.ChoiceField(label="Class")
     text = forms.CharField(label="Name", max_length=MAX_ENTITY)
@@ -65,15 +79,10 @@ class EntityForm(forms.Form):
     attributes = AttributeLinesField(
         max_length=20_000, help_text="One a line, such as category: drinks or room: kitchen."
     )
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
-    def __init__(self, world: World, row: Entity | None, *args: Any, **kwargs: Any):
-        super().__init__(*args, **kwargs)
-        self.world = world
-        self.row = row
-        self.fields["text"].disabled = row is not None
-        if row is None and not self.is_bound:
+    def __init__(self, world: World, *args: Any, **options: Any):
+        super().__init__(world, *args, **options)
+        if self.row is None and not self.is_bound:
             self.fields["text"].widget.attrs["autofocus"] = True
         self.fields["entity_class"] = class_field(world)
 
@@ -90,12 +99,27 @@ class EntityForm(forms.Form):
                 self.add_error(field, sentence_of(error))
         return cleaned
 
-    @property
-    def values(self) -> dict[str, Any]:
-        names = ("entity_class", "aliases", "attributes", *(() if self.row else ("text",)))
-        return {name: self.cleaned_data[name] for name in names}
+    @classmethod
+    def shown(cls, row: Any) -> dict[str, Any]:
+        return {name: as_text(value) for name, value in super().shown(row).items()}
+
+    @classmethod
+    def typed(cls, sent: Mapping[str, Any]) -> dict[str, Any]:
+        return {name: as_text(value) for name, value in sent.items()}
+
+    def unsaved(self) -> Entity:
+        text = self.cleaned_data["text"]
+        return Entity(ontology=ontology_in(self.world), text=text, **self.values)
 
     @property
+    def repeated(self) -> str:
+        return "This entity is there already." if self.additions.duplicates else ""
+
+    @property
+    def remarks(self) -> Sequence[Problem]:
+        return self.additions.problems
+
+    @cached_property
     def additions(self) -> Additions:
         """What the checker says of the ontology with this entity, once the fields are valid."""
         rest = Entity.objects.filter(ontology__world=self.world)
@@ -148,9 +172,3 @@ class EntitiesForm(forms.Form):
 
 def ontology_in(world: World) -> Ontology:
     return Ontology.objects.get_or_create(world=world)[0]
-
-
-def initial_values(row: Editable) -> dict[str, Any]:
-    """Return what the fields of the form show for ``row``."""
-    names = ("entity_class", "text", "aliases", "attributes", "version")
-    return {name: as_text(getattr(row, name)) for name in names}

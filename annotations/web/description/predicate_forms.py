@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from django import forms
 
-from annotations.editing.once_keys import new_key
 from annotations.language.corpus import require_predicate
 from annotations.language.texts import MAX_GLOSS, MAX_PREDICATE, LanguageError
 from annotations.language.world import (
@@ -21,11 +21,16 @@ from annotations.models import Predicate as StoredPredicate
 from annotations.models import World
 from annotations.models.description import predicate_kind_choices
 from annotations.rows.from_rows import classes_of, predicate_of
+from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import sentence_of
 
 
-class PredicateForm(forms.Form):
+class PredicateForm(NounForm):
     """A predicate. The name of a stored one changes only by renaming."""
+
+    model = StoredPredicate
+    fixed = ("name",)
+    key = "name"
 
     name = forms.CharField(max_length=MAX_PREDICATE, help_text="Such as is_near.")
     kind = forms.ChoiceField(
@@ -44,15 +49,10 @@ class PredicateForm(forms.Form):
         help_text="{1} is the first argument, _ what a description describes; | separates "
         "alternatives. Empty: made from the name.",
     )
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
-    def __init__(self, world: World, row: StoredPredicate | None, *args: Any, **kwargs: Any):
-        super().__init__(*args, **kwargs)
-        self.world = world
-        self.row = row
+    def __init__(self, world: World, *args: Any, **options: Any):
+        super().__init__(world, *args, **options)
         self.classes = classes_of(world)
-        self.fields["name"].disabled = row is not None
         self.fields["signatures"].help_text = (
             "One way to use it a line; ? marks arguments at the end that may be missing. "
             f"Kinds: {', '.join(known_kinds(self.classes))}."
@@ -73,6 +73,22 @@ class PredicateForm(forms.Form):
         except LanguageError as error:
             raise forms.ValidationError(sentence_of(error)) from error
 
+    @classmethod
+    def shown(cls, row: Any) -> dict[str, Any]:
+        names = ("name", "kind", "gloss", "version")
+        signatures = print_signatures(predicate_of(row).signatures)
+        return {**{name: getattr(row, name) for name in names}, "signatures": signatures}
+
+    @classmethod
+    def typed(cls, sent: Mapping[str, Any]) -> dict[str, Any]:
+        lines = [f"({', '.join(each)})" for each in sent.get("signatures", ())]
+        return {**sent, "signatures": "\n".join(lines)} if "signatures" in sent else dict(sent)
+
+    @property
+    def repeated(self) -> str:
+        is_there = self.world.predicates.filter(name=self.cleaned_data["name"]).exists()
+        return "There is a predicate of this name already. Change that one." if is_there else ""
+
     @property
     def predicate(self) -> Predicate:
         """The predicate as it is typed, once the form is valid."""
@@ -86,13 +102,3 @@ class PredicateForm(forms.Form):
         typed = self.predicate
         signatures = [list(map(str, each.arguments)) for each in typed.signatures]
         return {"kind": str(typed.kind), "signatures": signatures, "gloss": typed.gloss}
-
-
-def initial_values(row: Any) -> dict[str, Any]:
-    """Return what the fields of the form show for ``row``."""
-    value = predicate_of(row)
-    names = ("name", "kind", "gloss", "version")
-    return {
-        **{name: getattr(row, name) for name in names},
-        "signatures": print_signatures(value.signatures),
-    }

@@ -6,7 +6,6 @@ from typing import Any
 
 from django import forms
 
-from annotations.editing.once_keys import new_key
 from annotations.generation.production_check import (
     EXPANSION_FIELD,
     CheckedProduction,
@@ -15,8 +14,9 @@ from annotations.generation.production_check import (
 )
 from annotations.language.corpus import require_nonterminal
 from annotations.language.texts import MAX_NONTERMINAL, MAX_PATTERN, LanguageError, Problem
-from annotations.models import Editable, Production, TaskCategory, World
+from annotations.models import Production, TaskCategory, World
 from annotations.rows.composition import own_category, split_entry
+from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import choice_field, sentence_of
 
 
@@ -27,11 +27,16 @@ def sources_of(world: World) -> list[str]:
     return list(dict.fromkeys(split_entry(entry)[0] for entry in entries))
 
 
-class ProductionForm(forms.Form):
+class ProductionForm(NounForm):
     """A line of the grammar. The nonterminal of a stored one changes only by renaming.
 
     ``checked`` is what the checker says, once the form has been validated.
     """
+
+    model = Production
+    fixed = ("nonterminal", "source")
+    edited = ("expansion",)
+    key = "nonterminal"
 
     nonterminal = forms.CharField(
         max_length=MAX_NONTERMINAL, help_text="Without the dollar sign, such as vbfind."
@@ -43,20 +48,14 @@ class ProductionForm(forms.Form):
         ),
     )
     source = forms.ChoiceField(label="File")
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
-    def __init__(self, world: World, row: Production | None, *args: Any, **kwargs: Any):
-        super().__init__(*args, **kwargs)
-        self.world = world
-        self.row = row
+    def __init__(self, world: World, *args: Any, **options: Any):
+        super().__init__(world, *args, **options)
         self.checked: CheckedProduction | None = None
         sources = sources_of(world)
-        if row and row.source not in sources:
-            sources.append(row.source)
+        if self.row and self.row.source not in sources:
+            sources.append(self.row.source)
         choice_field(self, "source").choices = [(name, name) for name in sources]
-        for name in ("nonterminal", "source"):
-            self.fields[name].disabled = row is not None
 
     def clean_nonterminal(self) -> str:
         name = str(self.cleaned_data["nonterminal"]).removeprefix("$")
@@ -81,6 +80,14 @@ class ProductionForm(forms.Form):
             )
         return cleaned
 
+    def unsaved(self) -> Production:
+        sent, grammar = self.cleaned_data, self.world.grammar
+        return Production(
+            grammar=grammar,
+            **{name: sent[name] for name in (*self.fixed, *self.edited)},
+            task_category=own_category(grammar.task_categories.all(), sent["source"]),
+        )
+
     @property
     def remarks(self) -> tuple[Problem, ...]:
         """What the checker says; nothing before the form has been validated."""
@@ -93,21 +100,3 @@ class ProductionForm(forms.Form):
         return ProductionEdit(
             self.world, sent["source"], sent["nonterminal"], sent["expansion"], self.row
         )
-
-
-def unsaved_production(world: World, form: ProductionForm) -> Production:
-    """Return the production that a valid form describes."""
-    source = form.cleaned_data["source"]
-    return Production(
-        grammar=world.grammar,
-        source=source,
-        nonterminal=form.cleaned_data["nonterminal"],
-        expansion=form.cleaned_data["expansion"],
-        task_category=own_category(world.grammar.task_categories.all(), source),
-    )
-
-
-def initial_values(row: Editable) -> dict[str, Any]:
-    """Return what the fields of the form show for ``row``."""
-    names = ("nonterminal", "expansion", "source", "version")
-    return {name: getattr(row, name) for name in names}

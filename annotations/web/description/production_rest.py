@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
-
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.texts import MAX_NONTERMINAL, MAX_PATTERN, Problem
 from annotations.models import Production, TaskCategory
 from annotations.web.description.description_filters import ProductionFilters
-from annotations.web.description.production_forms import (
-    ProductionForm,
-    initial_values,
-    unsaved_production,
-)
-from annotations.web.rest.fields import Fields, LineField
-from annotations.web.rest.routes import EditableViewSet, Noun, RowsRoute
+from annotations.web.description.production_forms import ProductionForm
+from annotations.web.description.production_pages import PRODUCTIONS
+from annotations.web.editing.noun_rest import FormFields, NounViewSet
+from annotations.web.rest.fields import LineField
+from annotations.web.rest.routes import RowsRoute
 
 
 class ProductionSerializer(serializers.ModelSerializer[Production]):
@@ -31,43 +25,28 @@ class ProductionSerializer(serializers.ModelSerializer[Production]):
         ]
 
 
-class ProductionChange(Fields):
-    expansion = serializers.CharField(max_length=MAX_PATTERN)
+class ProductionChange(FormFields):
+    class Meta:
+        form = ProductionForm
+        fields = [*ProductionForm.edited]
 
 
 class NewProduction(ProductionChange):
     """``source`` is the file of the grammar that the line is added to."""
 
-    nonterminal = LineField(max_length=MAX_NONTERMINAL)
     source = LineField(max_length=200)  # type: ignore[assignment]  # the name of the column
 
+    class Meta(ProductionChange.Meta):
+        fields = ["nonterminal", "expansion"]
 
-class ProductionNoun(Noun):
-    model = Production
+
+class ProductionViewSet(NounViewSet):
+    """The lines of the grammar."""
+
+    noun = PRODUCTIONS
     serializer_class = ProductionSerializer
     new_serializer = NewProduction
     change_serializer = ProductionChange
-
-    def rows(self) -> QuerySet[Production]:
-        return Production.objects.filter(grammar__world=self.world)
-
-    def form_of(self, row: Production | None, sent: Mapping[str, Any]) -> ProductionForm:
-        stored = initial_values(row) if row else {}
-        return ProductionForm(self.world, row, {**stored, **sent}, initial=stored)
-
-    def unsaved(self, form: ProductionForm) -> Production:
-        return unsaved_production(self.world, form)
-
-    def values_of(self, form: ProductionForm, row: Production) -> Mapping[str, Any]:
-        return {"expansion": form.cleaned_data["expansion"]}
-
-    def problems_of(self, form: ProductionForm) -> Iterable[Problem]:
-        return form.remarks
-
-
-class ProductionViewSet(ProductionNoun, EditableViewSet):
-    """The lines of the grammar."""
-
     filterset_class = ProductionFilters
     sorts = {"position": "position", "nonterminal": "nonterminal", "id": "pk"}
 

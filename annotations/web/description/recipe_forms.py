@@ -2,41 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
 
 from django import forms
 
-from annotations.editing.once_keys import new_key
-from annotations.generation.recipe_check import BookRow, CheckedRow, RowModel, check_row
+from annotations.generation.recipe_check import CheckedRow, RowModel, check_row
 from annotations.language.plans import MAX_ROW, RecipeBook, read_book, shipped_books
 from annotations.language.texts import LanguageError, Problem
-from annotations.models import Primitive, World
+from annotations.models import Primitive, Recipe
+from annotations.web.editing.noun_forms import NounForm
 
 MOST_OF_A_BOOK = 100_000  # characters of all its primitives, or recipes
 
 
-class BookRowForm(forms.Form):
-    """A primitive or a recipe, as text. The name of a stored primitive changes only by renaming."""
+class BookRowForm(NounForm):
+    """A primitive or a recipe, as text."""
+
+    model: ClassVar[RowModel]
+    edited = ("text",)
+    key = "text"
 
     text = forms.CharField(
         max_length=MAX_ROW,
         widget=forms.Textarea(attrs={"rows": 5, "class": "mono", "spellcheck": "false"}),
     )
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
-    def __init__(
-        self, world: World, model: RowModel, row: BookRow | None, *args: Any, **kwargs: Any
-    ):
-        # A comment below has a text, too.
-        super().__init__(*args, **{**kwargs, "auto_id": "row_%s"})
-        self.world = world
-        self.model = model
-        self.row = row
+    def __init__(self, *args: Any, **options: Any):
+        super().__init__(*args, auto_id="row_%s", **options)  # a comment below has a text, too
         self.checked = CheckedRow(())
-        self.values: dict[str, str] = {}
-        is_primitive = model is Primitive
-        self.fields["text"].label = "Primitive" if is_primitive else "Recipe"
+        self.columns: Mapping[str, str] = {}
+        self.fields["text"].label = str(self.model._meta.verbose_name).capitalize()
 
     def clean_text(self) -> str:
         # A row is one line; each character keeps its place for what the checker says of it.
@@ -45,10 +41,32 @@ class BookRowForm(forms.Form):
         if error := self.checked.error:
             raise forms.ValidationError(_say(error))
         try:
-            self.values = self.model.columns_of(text)
+            self.columns = self.model.columns_of(text)
         except LanguageError as refused:
             raise forms.ValidationError(_say(refused.problem)) from refused
-        if isinstance(self.row, Primitive) and self.values["name"] != self.row.name:
+        return text
+
+    @property
+    def values(self) -> Mapping[str, str]:
+        return self.columns
+
+    @property
+    def remarks(self) -> Sequence[Problem]:
+        return self.checked.problems
+
+
+class RecipeForm(BookRowForm):
+    model = Recipe
+
+
+class PrimitiveForm(BookRowForm):
+    """The name of a stored primitive changes only by renaming."""
+
+    model = Primitive
+
+    def clean_text(self) -> str:
+        text = super().clean_text()
+        if self.row and self.columns["name"] != self.row.name:
             said = f"This primitive is called {self.row.name}. “Rename” changes its name in all recipes."
             raise forms.ValidationError(said)
         return text
@@ -85,11 +103,6 @@ class RecipeBookForm(forms.Form):
         return sent
 
     book: RecipeBook
-
-
-def initial_values(row: Any) -> dict[str, Any]:
-    """Return what the fields of the form show for ``row``."""
-    return {"text": row.text, "version": row.version}
 
 
 def _say(problem: Problem) -> str:

@@ -2,35 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.contrib import messages
-from django.core.exceptions import ValidationError
-from django.http import Http404, HttpResponse
+from django.http import HttpResponse
 from django.shortcuts import redirect, render
 from django.urls import reverse
 
-from annotations.editing.edits import Overtaken, add
 from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
-from annotations.generation.recipe_check import (
-    BookRow,
-    CheckedRow,
-    RowModel,
-    problems_by_row,
-    try_row,
-)
+from annotations.generation.recipe_check import problems_by_row, try_row
 from annotations.language.plans import default_book, read_primitive, read_recipe, shipped_books
 from annotations.language.texts import Problem, Refusal
 from annotations.models import Duty, Primitive, Recipe, World
-from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
-from annotations.rows.row_kinds import KINDS
-from annotations.showing.paging import number_in
-from annotations.web.description.recipe_forms import BookRowForm, RecipeBookForm, initial_values
-from annotations.web.editing.merge_pages import merge_page, save_edit
+from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.web.description.recipe_forms import (
+    BookRowForm,
+    PrimitiveForm,
+    RecipeBookForm,
+    RecipeForm,
+)
+from annotations.web.editing.nouns import Noun
 from annotations.web.editing.undo import say_with_undo
-from annotations.web.forms import posted
-
-MODELS: dict[str, RowModel] = {"recipe": Recipe, "primitive": Primitive}
 
 
 @world_view(Duty.VIEW)
@@ -90,115 +83,54 @@ def recipe_book(request: WorldRequest, world: World) -> HttpResponse:
     return redirect("recipes", world=world.name)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def recipe(request: WorldRequest, world: World, pk: int) -> HttpResponse:
-    """Show a recipe with an example. Annotators change it."""
-    return _row_page(request, world, "recipe", pk)
+class BookNoun(Noun):
+    """A row of the book, with what is wrong with it and what the robot does by it."""
 
+    form: type[BookRowForm]
+    template = "annotations/description/recipe.html"
+    preview_template = "annotations/description/_recipe_preview.html"
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
-def primitive(request: WorldRequest, world: World, pk: int) -> HttpResponse:
-    """Show a primitive with an example. Annotators change it."""
-    return _row_page(request, world, "primitive", pk)
+    def context(
+        self, request: WorldRequest, world: World, row: Any | None, form: BookRowForm
+    ) -> Mapping[str, Any]:
+        kind, model = self.kind.name, form.model
+        return {
+            "kind": kind,
+            "preview": f"{kind}_preview",
+            "name": self.title_of(row) if row else "",
+            "text": row.text if row else "",
+            "checked": try_row(world, model, row.text, row) if row else None,
+        }
 
-
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def recipe_new(request: WorldRequest, world: World) -> HttpResponse:
-    """Add a recipe."""
-    return _new_page(request, world, "recipe")
-
-
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
-def primitive_new(request: WorldRequest, world: World) -> HttpResponse:
-    """Add a primitive."""
-    return _new_page(request, world, "primitive")
-
-
-@world_view(Duty.ANNOTATE, WRITE)
-def recipe_preview(request: WorldRequest, world: World) -> HttpResponse:
-    """Say what is wrong with the typed recipe, and what the robot does by it."""
-    return _preview(request, world, "recipe")
-
-
-@world_view(Duty.ANNOTATE, WRITE)
-def primitive_preview(request: WorldRequest, world: World) -> HttpResponse:
-    """Say what is wrong with the typed primitive, and what the robot does with it."""
-    return _preview(request, world, "primitive")
-
-
-def _row_page(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
-    row, is_there = KINDS[kind].row_or_last_known(world, pk)
-    if not is_there and request.method != "POST":
-        return redirect("history", world=world.name, kind=kind, pk=pk)
-    model = MODELS[kind]
-    form = BookRowForm(world, model, row, posted(request), initial=initial_values(row))
-    if request.method == "POST" and form.is_valid():
-        try:
-            row = save_edit(request, row, form, form.values)
-        except Overtaken as clash:
-            return merge_page(request, row, form, clash, initial_values)
-        except ValidationError as error:
-            form.add_error("text", error.messages)
-        else:
-            messages.success(request, f"Saved as version {row.version}.")
-            return redirect(kind, world=world.name, pk=pk)
-    checked = try_row(world, model, row.text, row if is_there else None)
-    return _render(request, kind, form, row, checked)
-
-
-def _new_page(request: WorldRequest, world: World, kind: str) -> HttpResponse:
-    model = MODELS[kind]
-    form = BookRowForm(
-        world, model, None, posted(request), initial={"text": request.GET.get("text", "")}
-    )
-    if request.method == "POST" and form.is_valid():
-        try:
-            row = add(model(world=world, **form.values), request.user, form.cleaned_data["once"])
-        except ValidationError as error:
-            form.add_error("text", error.messages)
-        else:
-            messages.success(request, f"Added {_name_of(row)}.")
-            return redirect(kind, world=world.name, pk=row.pk)
-    return _render(request, kind, form, None, None)
-
-
-def _render(
-    request: WorldRequest,
-    kind: str,
-    form: BookRowForm,
-    row: BookRow | None,
-    checked: CheckedRow | None,
-) -> HttpResponse:
-    context = {
-        "kind": kind,
-        "row": row,
-        "name": _name_of(row) if row else "",
-        "form": form,
-        "checked": checked,
-        "text": row.text if row else "",
-        "preview": f"{kind}_preview",
-        "query": f"?row={row.pk}" if row else "",
-    }
-    return render(request, "annotations/description/recipe.html", context)
-
-
-def _preview(request: WorldRequest, world: World, kind: str) -> HttpResponse:
-    key = request.GET.get("row", "")
-    row = KINDS[kind].rows_of(world).filter(pk=number_in(key)).first()
-    if key and row is None:
-        raise Http404(f"No such {kind}.")
-    text = request.POST.get("text", "").replace("\0", "").replace("\r\n", "\n").replace("\n", " ")
-    context: dict[str, Any] = {"text": text}
-    if text.strip():
+    def preview(self, request: WorldRequest, world: World, form: BookRowForm) -> Mapping[str, Any]:
+        text = request.POST.get("text", "").replace("\0", "")
+        text = text.replace("\r\n", "\n").replace("\n", " ")
+        if not text.strip():
+            return {"text": text}
         chosen = request.POST.get("example", "")
-        context["checked"] = try_row(world, MODELS[kind], text, row, chosen)  # type: ignore[arg-type]  # of that kind
-    return render(request, "annotations/description/_recipe_preview.html", context)
+        return {"text": text, "checked": try_row(world, form.model, text, form.row, chosen)}
+
+    def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
+        return {"text": request.GET.get("text", "")}
+
+
+class RecipeNoun(BookNoun):
+    form = RecipeForm
+
+    def title_of(self, row: Recipe) -> str:
+        return str(read_recipe(row.text).pattern)
+
+
+class PrimitiveNoun(BookNoun):
+    form = PrimitiveForm
+
+    def title_of(self, row: Primitive) -> str:
+        return row.name
+
+
+RECIPES, PRIMITIVES = RecipeNoun(), PrimitiveNoun()
 
 
 def _shipped(value: Any) -> tuple[None, Any, list[Problem]]:
     """Return what the list shows of a value of a shipped book: it has no row."""
     return None, value, []
-
-
-def _name_of(row: BookRow) -> str:
-    return row.name if isinstance(row, Primitive) else str(read_recipe(row.text).pattern)

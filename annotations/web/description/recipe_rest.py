@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from http import HTTPStatus
 from typing import Any
 
 from django.db import transaction
-from django.db.models import Model, QuerySet
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
 from annotations.editing.recipe_books import replace_book, shipped_book_of
-from annotations.editing.recipe_deletion import delete_primitive
-from annotations.generation.recipe_check import FIELD, RowModel, try_row
+from annotations.generation.recipe_check import FIELD, try_row
 from annotations.language.plans import MAX_ROW, RecipeBook, shipped_books
-from annotations.language.texts import Problem
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of
 from annotations.rows.stored_problems import as_json
 from annotations.web.description.check_rest import Check, FoundSerializer, replaced_field
-from annotations.web.description.recipe_forms import (
-    BookRowForm,
-    RecipeBookForm,
-    initial_values,
-)
+from annotations.web.description.recipe_forms import RecipeBookForm
+from annotations.web.description.recipe_pages import PRIMITIVES, RECIPES
+from annotations.web.editing.noun_rest import NounRoute, NounViewSet
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.matching import etag_of, require_match
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
-from annotations.web.rest.routes import EditableViewSet, Noun, WorldRoute
+from annotations.web.rest.routes import WorldRoute
 
 ROWS = ("primitives", "recipes")
 MOST_ROWS = 1_000  # of a kind, in a book
@@ -59,59 +52,24 @@ class BookRowChange(Fields):
     text = LineField(max_length=MAX_ROW)
 
 
-class BookNoun(Noun):
-    """A kind of row of the book."""
-
-    new_serializer = BookRowChange
-    change_serializer = BookRowChange
-    row_model: RowModel
-
-    def rows(self) -> QuerySet[Any]:
-        return self.row_model._default_manager.filter(world=self.world)
-
-    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> BookRowForm:
-        stored = initial_values(row) if row else {}
-        return BookRowForm(self.world, self.row_model, row, {**stored, **sent}, initial=stored)
-
-    def unsaved(self, form: BookRowForm) -> Primitive | Recipe:
-        return self.row_model(world=self.world, **form.values)
-
-    def values_of(self, form: BookRowForm, row: Any) -> Mapping[str, Any]:
-        return form.values
-
-    def problems_of(self, form: BookRowForm) -> Iterable[Problem]:
-        return form.checked.problems
-
-
-class PrimitiveNoun(BookNoun):
-    model: type[Model] = Primitive
-    row_model = Primitive
-    serializer_class = PrimitiveSerializer
-
-
-class RecipeNoun(BookNoun):
-    model: type[Model] = Recipe
-    row_model = Recipe
-    serializer_class = RecipeSerializer
-
-
-class PrimitiveViewSet(PrimitiveNoun, EditableViewSet):
-    """What the robot can do. The name of a primitive changes by renaming."""
-
+class BookRowViewSet(NounViewSet):
+    new_serializer = change_serializer = BookRowChange
     filter_backends = []
+
+
+class PrimitiveViewSet(BookRowViewSet):
+    """What the robot can do. The name of a primitive changes by renaming, and one that a recipe uses stays."""
+
+    noun = PRIMITIVES
+    serializer_class = PrimitiveSerializer
     sorts = {"position": "position", "name": "name", "id": "pk"}
 
-    def destroy(self, request: ApiRequest, **kwargs: Any) -> Response:
-        """Deletes one that no recipe uses; its history can bring it back."""
-        row = self.matched()
-        delete_primitive(row, request.user, row.version)
-        return Response(status=HTTPStatus.NO_CONTENT)
 
-
-class RecipeViewSet(RecipeNoun, EditableViewSet):
+class RecipeViewSet(BookRowViewSet):
     """How the robot does the actions of forms."""
 
-    filter_backends = []
+    noun = RECIPES
+    serializer_class = RecipeSerializer
     sorts = {"position": "position", "action": "action", "id": "pk"}
 
 
@@ -143,14 +101,14 @@ class BookRowToCheck(BookRowChange):
     command = serializers.CharField(max_length=MOST_CHARACTERS, required=False, default="")
 
 
-class CheckBookRow(BookNoun, Check):
+class CheckBookRow(NounRoute, Check):
     """Checks a row of the book, and says what the robot does by it."""
 
     @extend_schema(request=BookRowToCheck, responses={200: CheckedBookRow})
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(BookRowToCheck)
         replaced = self.replaced(sent)
-        checked = try_row(self.world, self.row_model, sent["text"], replaced, sent["command"])
+        checked = try_row(self.world, self.noun.form.model, sent["text"], replaced, sent["command"])
         example = checked.example
         return Response(
             {
@@ -168,12 +126,16 @@ class CheckBookRow(BookNoun, Check):
         )
 
 
-class CheckPrimitive(CheckBookRow, PrimitiveNoun):
+class CheckPrimitive(CheckBookRow):
     """Checks a primitive, and says what the robot does with it."""
 
+    noun = PRIMITIVES
 
-class CheckRecipe(CheckBookRow, RecipeNoun):
+
+class CheckRecipe(CheckBookRow):
     """Checks a recipe, and says what the robot does by it."""
+
+    noun = RECIPES
 
 
 class BookFields(Fields):

@@ -7,7 +7,6 @@ from typing import Any
 
 from django import forms
 
-from annotations.editing.once_keys import new_key
 from annotations.generation.template_check import CheckedTemplate, check_template
 from annotations.generation.world_consequences import (
     TemplateChange,
@@ -18,14 +17,19 @@ from annotations.language.forms import plain_marks
 from annotations.language.texts import MAX_FORM, MAX_PATTERN
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
+from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import row_field
 
 
-class TemplateForm(forms.Form):
+class TemplateForm(NounForm):
     """A pattern and its logical form. An error of the checker keeps a template from being ready.
 
     ``checked`` is what the checker says, once the form has been validated and holds both sides.
     """
+
+    model = SemanticTemplate
+    edited = ("pattern", "form", "status")
+    key = "pattern"
 
     task_category = forms.ModelChoiceField(TaskCategory.objects.none(), empty_label=None)
     pattern = forms.CharField(
@@ -42,18 +46,36 @@ class TemplateForm(forms.Form):
         initial=TemplateStatus.READY,
         help_text="Only ready templates make commands.",
     )
-    version = forms.IntegerField(widget=forms.HiddenInput, required=False)
-    once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
-    def __init__(self, world: World, *args: Any, **kwargs: Any):
-        super().__init__(*args, **kwargs)
-        self.world = world
+    def __init__(self, world: World, *args: Any, **options: Any):
+        super().__init__(world, *args, **options)
         self.checked: CheckedTemplate | None = None
         row_field(self, "task_category").queryset = TaskCategory.objects.filter(
             grammar__world=world
         )
+        if self.row is not None:  # it stays where it is
+            self.fields["task_category"].required = False
+            self.fields[
+                "task_category"
+            ].help_text = "Choose another one to move the template there."
         for name, example in example_template(world).items():
             self.fields[name].widget.attrs["placeholder"] = example
+
+    @classmethod
+    def shown(cls, row: Any) -> dict[str, Any]:
+        categories = TaskCategory.objects.filter(grammar=row.grammar_id)
+        category = categories.filter(name=row.task_category).first()
+        return {**super().shown(row), "task_category": category}
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values to store, with the problems that the checker found."""
+        problems = self.checked.stored_problems if self.checked else []
+        moved = self.row.moved_to(self.cleaned_data["task_category"]) if self.row else {}
+        return {**super().values, "problems": problems, **moved}
+
+    def unsaved(self) -> SemanticTemplate:
+        return SemanticTemplate.for_category(self.cleaned_data["task_category"], **self.values)
 
     def clean_form(self) -> str:
         return plain_marks(self.cleaned_data["form"])
@@ -97,26 +119,12 @@ def example_template(world: World) -> dict[str, str]:
     return {"pattern": production.expansion} if production else {}
 
 
-def initial_of(world: World, row: SemanticTemplate) -> dict[str, object]:
-    category = TaskCategory.objects.filter(grammar__world=world, name=row.task_category).first()
-    names = ("pattern", "form", "status", "version")
-    return {"task_category": category, **{name: getattr(row, name) for name in names}}
-
-
-def values_of(form: TemplateForm) -> dict[str, object]:
-    """Return the values to store, with the problems that the checker found."""
-    values = {name: form.cleaned_data[name] for name in ("pattern", "form", "status")}
-    return {**values, "problems": form.checked.stored_problems if form.checked else []}
-
-
-def consequences_of_form(
-    world: World, form: TemplateForm, row: SemanticTemplate | None
-) -> WorldConsequences | None:
-    """Return what saving the form over ``row`` would change. Without a row it is a new template.
+def consequences_of_form(form: TemplateForm) -> WorldConsequences | None:
+    """Return what saving the form would change.
 
     None while a side is empty. ``trouble`` is set if an error keeps the template from being saved.
     """
-    form.fields["task_category"].required = row is None
+    world, row = form.world, form.row
     form.is_valid()  # the template may be a draft, and then an error does not stop it
     values = {name: form[name].value() or "" for name in ("pattern", "form", "status")}
     category = form.chosen_category

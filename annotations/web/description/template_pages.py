@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from hashlib import sha256
 from typing import Any
 from urllib.parse import urlencode
@@ -49,11 +48,10 @@ from annotations.web.description.template_forms import (
     TemplateForm,
     change_to,
     consequences_of_form,
-    initial_of,
-    values_of,
 )
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.merge_pages import merge_page, save_edit
+from annotations.web.editing.nouns import Noun
 from annotations.web.forms import posted
 
 SORTS = {
@@ -66,6 +64,15 @@ SORTS = {
 
 # Shown above an empty editor, and looked at for them.
 EXAMPLES, MOST_EXAMPLES = 3, 100
+
+
+class TemplateNoun(Noun):
+    """Templates are edited with their commands and what a change would do, on pages of their own."""
+
+    form = TemplateForm
+
+
+TEMPLATES = TemplateNoun()
 
 
 @world_view(Duty.VIEW)
@@ -132,13 +139,11 @@ def template_new(request: WorldRequest, world: World) -> HttpResponse:
     if not has_grammar(world):
         return render(request, "annotations/description/template_needs_grammar.html")
     suggested = suggestions_for_command(request, world)
-    form = TemplateForm(world, posted(request), initial=suggested.get("initial"))
+    form = TemplateForm(world, None, posted(request), initial=suggested.get("initial"))
     if request.method == "POST" and form.is_valid():
         category = form.cleaned_data["task_category"]
-        values = values_of(form)
-        expected = consequences(world, change_to(None, category, values))
-        unsaved = SemanticTemplate.for_category(category, **values)
-        row = add(unsaved, request.user, form.cleaned_data["once"])
+        expected = consequences(world, change_to(None, category, form.values))
+        row = add(form.unsaved(), request.user, form.cleaned_data["once"])
         tell_saved(request, row, "Saved.", expected)
         return redirect(page_after(request, row))
     checked = form.checked or checked_of(world, form)
@@ -159,13 +164,11 @@ def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     row, is_there = KINDS["template"].row_or_last_known(world, pk)
     if not is_there and request.method != "POST":
         return redirect("history", world=world.name, kind="template", pk=pk)
-    form = TemplateForm(world, posted(request), initial=initial_of(world, row))
-    form.fields["task_category"].required = False  # it stays where it is
-    form.fields["task_category"].help_text = "Choose another one to move the template there."
+    form = TemplateForm(world, row, posted(request))
     context = {"row": row, "form": form, "n_commands": row.commands.count()}
     context["duplicate"] = None if form.is_bound else duplicate_of(world, row)
     if request.method == "POST" and form.is_valid():
-        values = values_of(form) | row.moved_to(form.cleaned_data["task_category"])
+        values = form.values
         expected = consequences(world, change_to(row, form.cleaned_data["task_category"], values))
         try:
             row = save_edit(request, row, form, values)
@@ -174,8 +177,7 @@ def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
                 "check_url": reverse("template_check", args=[world.name]),
                 "completion_url": reverse("template_completion", args=[world.name, 0]),
             }
-            shown = partial(initial_of, world)
-            return merge_page(request, row, form, clash, shown, **urls)
+            return merge_page(request, row, form, clash, TemplateForm.shown, **urls)
         tell_saved(request, row, f"Saved as version {row.version}.", expected)
         return redirect(page_after(request, row))
     if request.GET.get("nearest") and Duty.ANNOTATE in request.duties:
@@ -259,7 +261,7 @@ def typed_in(form: TemplateForm) -> tuple[TaskCategory | None, str, str] | None:
 @world_view(Duty.ANNOTATE, WRITE)
 def template_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
-    typed = typed_in(TemplateForm(world, request.POST))
+    typed = typed_in(TemplateForm(world, None, request.POST))
     return JsonResponse(assist(world, *typed) if typed else {"problems": []})
 
 
@@ -280,7 +282,7 @@ def template_completion(request: WorldRequest, world: World, pk: int) -> HttpRes
 @world_view(Duty.ANNOTATE, WRITE)
 def template_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the typed template means, with samples of its commands."""
-    checked = checked_of(world, TemplateForm(world, request.POST))
+    checked = checked_of(world, TemplateForm(world, None, request.POST))
     seed = number_in(request.POST.get("seed", ""))
     context = {"checked": checked, "samples": checked and samples_of(world, checked, seed)}
     return render(request, "annotations/description/_template_preview.html", context)
@@ -292,7 +294,7 @@ def template_consequences(request: WorldRequest, world: World) -> HttpResponse:
     key = request.GET.get("template", "")
     rows = SemanticTemplate.objects.filter(grammar__world=world)
     row = get_object_or_404(rows, pk=number_in(key)) if key else None
-    expected = consequences_of_form(world, TemplateForm(world, request.POST), row)
+    expected = consequences_of_form(TemplateForm(world, row, request.POST))
     context = {"expected": expected, "groups": groups_of(expected) if expected else []}
     return render(request, "annotations/_change_consequences.html", context)
 

@@ -9,14 +9,15 @@ import django_filters
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.texts import MAX_FORM, MAX_PATTERN, Refusal
+from annotations.language.texts import Refusal
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.description.description_filters import TemplateFilters, with_counts
-from annotations.web.description.template_forms import TemplateForm, initial_of, values_of
-from annotations.web.rest.fields import Fields, LineField
+from annotations.web.description.template_forms import TemplateForm
+from annotations.web.description.template_pages import TEMPLATES
+from annotations.web.editing.noun_rest import FormFields, NounRoute, NounViewSet
+from annotations.web.rest.fields import LineField
 from annotations.web.rest.problem_details import ProblemItemSerializer
-from annotations.web.rest.routes import EditableViewSet, Noun
 
 
 class TemplateSerializer(serializers.ModelSerializer[SemanticTemplate]):
@@ -33,15 +34,17 @@ class TemplateSerializer(serializers.ModelSerializer[SemanticTemplate]):
         ]
 
 
-class TemplateChange(Fields):
+class TemplateChange(FormFields):
     """The form in any notation. Only ready templates make commands."""
 
     task_category = LineField(max_length=60)
-    pattern = serializers.CharField(max_length=MAX_PATTERN)
-    form = serializers.CharField(max_length=MAX_FORM)
     status = serializers.ChoiceField(
         choices=template_status_choices(), default=TemplateStatus.READY
     )
+
+    class Meta:
+        form = TemplateForm
+        fields = ["pattern", "form"]
 
 
 class TemplateQuery(TemplateFilters):
@@ -68,36 +71,25 @@ def category_called(world: World, name: str) -> TaskCategory:
     return category
 
 
-class TemplateNoun(Noun):
-    model = SemanticTemplate
-    serializer_class = TemplateSerializer
-    new_serializer = change_serializer = TemplateChange
+class TemplateRoute(NounRoute):
+    noun = TEMPLATES
 
-    def rows(self) -> QuerySet[SemanticTemplate]:
-        rows = SemanticTemplate.objects.filter(grammar__world=self.world)
-        return rows.select_related("author", "grammar__world")
+    def rows(self) -> QuerySet[Any]:
+        return super().rows().select_related("author", "grammar__world")
 
     def form_of(self, row: SemanticTemplate | None, sent: Mapping[str, Any]) -> TemplateForm:
-        stored: dict[str, Any] = dict(initial_of(self.world, row)) if row else {}
-        given = {**stored, **sent}
-        category = stored.get("task_category")
+        given = {**(TemplateForm.shown(row) if row else {}), **sent}
         if "task_category" in sent:
-            category = category_called(self.world, sent["task_category"])
+            given["task_category"] = category_called(self.world, sent["task_category"])
+        category = given.get("task_category")
         given["task_category"] = category.pk if category else ""
-        form = TemplateForm(self.world, given, initial=stored)
-        form.fields["task_category"].required = row is None  # it stays where it is
-        return form
-
-    def unsaved(self, form: TemplateForm) -> SemanticTemplate:
-        category = form.cleaned_data["task_category"]
-        return SemanticTemplate.for_category(category, **values_of(form))
-
-    def values_of(self, form: TemplateForm, row: SemanticTemplate) -> Mapping[str, Any]:
-        return values_of(form) | row.moved_to(form.cleaned_data["task_category"])
+        return TemplateForm(self.world, row, given)
 
 
-class TemplateViewSet(TemplateNoun, EditableViewSet):
+class TemplateViewSet(TemplateRoute, NounViewSet):
     """The semantic templates. After a change the commands follow at once, or as a job."""
 
+    serializer_class = TemplateSerializer
+    new_serializer = change_serializer = TemplateChange
     filterset_class = TemplateQuery
     sorts = {"position": "position", "pattern": "pattern", "status": "status", "id": "pk"}

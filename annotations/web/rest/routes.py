@@ -6,7 +6,7 @@ The verbs behind writes are those of the pages: a form of theirs says what is wr
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http import HTTPStatus
 from typing import Any
@@ -21,16 +21,11 @@ from rest_framework.response import Response
 from rest_framework.serializers import BaseSerializer
 from rest_framework.viewsets import ViewSetMixin
 
-from annotations.editing.edits import add, change, delete
-from annotations.language.texts import Problem
-from annotations.models import Duty, Editable, World
-from annotations.rows.stored_problems import as_json
-from annotations.web.rest.idempotency import once, slot_of
+from annotations.models import Duty, World
 from annotations.web.rest.matching import etag_of, require_match
 from annotations.web.rest.pagination import Keyset
 from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty, HasScope, asked_of
-from annotations.web.rest.problem_details import refusal_of_form
 
 
 class Route(GenericAPIView[Any]):
@@ -175,75 +170,6 @@ class Retrieved(Tagged):
 
 class RowsViewSet(ListModelMixin, Retrieved, WorldViewSet):
     """A kind of row of a world that is listed, and shown one by one."""
-
-
-class Noun(Tagged):
-    """A kind of editable row: how it is read from a request and stored.
-
-    ``new_serializer`` reads a new row and ``change_serializer`` what may be changed of one.
-    """
-
-    new_serializer: type[BaseSerializer[Any]]
-    change_serializer: type[BaseSerializer[Any]]
-    world: World
-
-    def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
-        """Return the form of the page, bound to what was sent over the values of ``row``."""
-        raise NotImplementedError
-
-    def unsaved(self, form: Any) -> Editable:
-        """Return the row that a valid form describes."""
-        raise NotImplementedError
-
-    def values_of(self, form: Any, row: Any) -> Mapping[str, Any]:
-        """Return the values of ``row`` that a valid form changes."""
-        raise NotImplementedError
-
-    def problems_of(self, form: Any) -> Iterable[Problem]:
-        """Return the checker's problems on a row that was stored."""
-        return ()
-
-    def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
-        form = self.form_of(row, sent)
-        if not form.is_valid():
-            raise refusal_of_form(form)
-        return form
-
-    def written(self, row: Editable, form: Any, status: int = HTTPStatus.OK) -> Response:
-        """Respond with the stored row and the checker's problems on it."""
-        problems = [as_json(each) for each in self.problems_of(form)]
-        shown = {"problems": problems, **self.get_serializer(row).data}
-        return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
-
-
-class EditableViewSet(Noun, RowsViewSet):
-    """Rows that annotators add, change and delete; the history of a row keeps what it was."""
-
-    duties = dict.fromkeys(("create", "partial_update", "destroy"), Duty.ANNOTATE)
-    conditional = ("partial_update", "destroy")
-
-    @once
-    def create(self, request: ApiRequest, **kwargs: Any) -> Response:
-        """Adds one."""
-        form = self.valid_form(None, self.read(self.new_serializer))
-        row = add(self.unsaved(form), request.user, slot_of(request))
-        response = self.written(row, form, HTTPStatus.CREATED)
-        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
-        return response
-
-    def partial_update(self, request: ApiRequest, **kwargs: Any) -> Response:
-        """Changes one."""
-        row = self.matched()
-        form = self.valid_form(row, self.read(self.change_serializer, partial=True))
-        values = self.values_of(form, row)
-        saved = change(row, values, request.user, row.version, again=False)
-        return self.written(saved, form)
-
-    def destroy(self, request: ApiRequest, **kwargs: Any) -> Response:
-        """Deletes one; its history can bring it back."""
-        row = self.matched()
-        delete(row, request.user, row.version)
-        return Response(status=HTTPStatus.NO_CONTENT)
 
 
 class Figures(WorldRoute):

@@ -19,7 +19,7 @@ def template_suggestions(request: WorldRequest, world: World) -> HttpResponse:
     A page that waits for a parser asks again with ``waiting``: it gets nothing new before the answer is
     there, and nobody is asked about what was typed meanwhile.
     """
-    form = TemplateForm(world, request.POST)
+    form = TemplateForm(world, None, request.POST)
     pattern = (form["pattern"].value() or "").strip()
     command = request.GET.get("command", "").replace("\0", "")[:MOST_COMMAND]
     is_waiting = "waiting" in request.GET

@@ -24,7 +24,7 @@ def sent(**values):
 
 
 def test_a_preview_says_it_in_english_and_names_the_templates_that_break(go, anna):
-    address = f"/w/home/predicates/preview/?predicate={go.pk}"
+    address = f"/w/home/predicates/preview/?row={go.pk}"
     answer = anna.post(address, sent(gloss="walk into {1}"))
     checked = answer.context["checked"]
     assert [each.sentence for each in checked.samples] == ["walk into the room"]

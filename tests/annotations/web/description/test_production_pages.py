@@ -48,7 +48,7 @@ def test_lines_of_templates_stand_with_the_nonterminal_that_they_are_for(sample,
 def test_consequences_are_shown_before_saving(find, anna, world):
     before = commands(world)
     sent = {"expansion": "find | seek"}
-    address = f"/w/home/grammar/preview/?production={find.pk}"
+    address = f"/w/home/grammar/preview/?row={find.pk}"
     answer = anna.post(address, sent)
     changes = answer.context["expected"].changes
     assert [each.command for each in changes.covered_in_grammar] == ["seek the <object>"]
@@ -67,7 +67,7 @@ def test_consequences_are_shown_before_saving(find, anna, world):
     ],
 )
 def test_the_checker_answers_while_one_types(find, anna, expansion, named, column, severity):
-    address = f"/w/home/grammar/check/?production={find.pk}"
+    address = f"/w/home/grammar/check/?row={find.pk}"
     (problem,) = anna.post(address, {"expansion": expansion}).json()["problems"]
     assert (problem["severity"], problem["column"]) == (severity, column)
     assert named in problem["message"]

@@ -109,7 +109,6 @@ def test_problems_say_where_they_are(call, category):
         ("entities", {**MILK, "aliases": ["a\nb"]}, "aliases.0"),
         ("entities", {**MILK, "attributes": {"a: b": "c"}}, "attributes"),
         ("entities", {**MILK, "attributes": {"a\nb": "c"}}, "attributes"),
-        ("entities", {**MILK, "text": "tea"}, "text"),
         ("entities", {**MILK, "text": "\ud800"}, "text"),
         ("predicates", {"name": "is hot", "kind": "action", "signatures": []}, "name"),
         ("predicates", {"name": "hot", "kind": "action", "signatures": [["moon"]]}, "signatures"),
@@ -123,9 +122,16 @@ def test_what_cannot_be_stored_is_refused_with_its_field(noun, sent, field, call
     assert field in {each.get("field") for each in answer.json()["problems"]}
 
 
-def test_a_predicate_is_declared_once(call, category):
-    sent = {"name": "go", "kind": "action", "signatures": [["room"]]}
-    assert call("post", "predicates/", sent).status_code == 409
+@pytest.mark.parametrize(
+    ("noun", "sent"),
+    [
+        ("entities", {**MILK, "text": "tea"}),
+        ("predicates", {"name": "go", "kind": "action", "signatures": [["room"]]}),
+    ],
+)
+def test_what_is_there_already_is_a_conflict(noun, sent, call, category):
+    answer = call("post", f"{noun}/", sent)
+    assert (answer.status_code, answer.json()["code"]) == (409, "is_there_already")
 
 
 def test_the_same_key_makes_one_row(call, category):
@@ -148,7 +154,7 @@ def test_a_clash_within_the_request_shows_the_present_row(
         change(row, {"aliases": ["chai"]}, admin, row.version)
         return change(*args, **options)
 
-    monkeypatch.setattr("annotations.web.rest.routes.change", too_late)
+    monkeypatch.setattr("annotations.web.editing.noun_rest.change", too_late)
     answer = call("patch", f"entities/{row.pk}/", {"aliases": ["char"]}, if_match='"1"')
     assert (answer.status_code, answer.json()["current"]["aliases"]) == (412, ["chai"])
 
