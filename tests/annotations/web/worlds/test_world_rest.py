@@ -12,11 +12,8 @@ from annotations.models import AuditEntry, Entity, Job, World
 def heavy(monkeypatch):
     """Everything takes long, so that it becomes a job."""
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-    for name in (
-        "worlds.world_deletion.is_heavy_deletion",
-        "world_archive.import_job.is_heavy_world",
-    ):
-        monkeypatch.setattr(f"annotations.{name}", lambda *_: True)
+    for name in ("world_deletion.is_heavy_deletion", "import_job.is_heavy_world"):
+        monkeypatch.setattr(f"annotations.exchange.{name}", lambda *_: True)
 
 
 def archive_of(call_as, user, world) -> SimpleUploadedFile:
