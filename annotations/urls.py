@@ -21,11 +21,11 @@ from annotations.web.description import (
     template_pages,
     template_repair_pages,
 )
-from annotations.web.description.class_pages import ENTITY_CLASSES
-from annotations.web.description.entity_pages import ENTITIES
-from annotations.web.description.predicate_pages import PREDICATES
-from annotations.web.description.production_pages import PRODUCTIONS
-from annotations.web.description.recipe_pages import PRIMITIVES, RECIPES
+from annotations.web.description.class_noun import ENTITY_CLASSES
+from annotations.web.description.entity_noun import ENTITIES
+from annotations.web.description.predicate_noun import PREDICATES
+from annotations.web.description.production_noun import PRODUCTIONS
+from annotations.web.description.recipe_noun import PRIMITIVES, RECIPES
 from annotations.web.editing import (
     comment_pages,
     deletion_pages,

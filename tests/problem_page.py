@@ -40,6 +40,7 @@ SAID = {
     "row_refused": "What was sent does not fit what is stored by now. `detail` says why.",
     "bad_rows": "Rows of the file cannot be read. `problems` names each with its line.",
     "entity_refused": "The entity that was offered does not fit the world. `detail` says why.",
+    "is_there_already": "Such a row is there already. `problems` names its field.",
     "in_use": "Something uses what was to be deleted. `detail` names it.",
     "no_language_model": "No language model can be asked last here. `detail` says what is missing.",
     "no_language_model_server": "No server of a language model is set up. `detail` says how to name one.",

@@ -48,8 +48,8 @@ ROOMS = {
         "rest", "editing", "worlds", "corpus", "description", "labelling", "people", "campaigns",
     ),
     "parser_service": (
-        "parsers", "analysis", "neural", "models", "runs", "serving", "labelling", "results", "reviews", "web",
-        "templatetags", "management",
+        "parsers", "analysis", "neural", "models", "runs", "serving", "labelling", "results", "reviews",
+        "benchmarking", "web", "templatetags", "management",
     ),
     "parser_service/parsers": ("hyperparameters", "llm"),
     "parser_service/neural": ("sentence_encoder", "t5", "word_vectors", "ranker", "seq2seq"),

@@ -17,7 +17,7 @@ MODULES = [
     path.relative_to(ROOT).as_posix()
     for app in ("annotations", "parser_service", "gpsr_site")
     for path in sorted((ROOT / app).rglob("*.py"))
-    if "migrations" not in path.parts
+    if "migrations" not in path.relative_to(ROOT).parts
 ]
 # Modules that check what a programmer gives them.
 CHECK_ARGUMENTS = (
@@ -33,8 +33,7 @@ SPEAK_TO_PEOPLE = tuple(
     f"{app}/{room}/"
     for app in ("annotations", "parser_service", "gpsr_site")
     for room in (
-        *("web", "management", "serving", "labelling", "label_audit", "analyses", "dialogues"),
-        *("queueing", "people", "jobs", "world_archive", "backup"),
+        *("web", "management", "serving", "labelling", "reviews", "people", "background", "backup"),
     )
 )
 WORDS_OF = ("str", "repr", "format")

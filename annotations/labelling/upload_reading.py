@@ -451,9 +451,10 @@ def _rows_of(
     except csv.Error as error:
         hint = "close the quotation mark, or double one that belongs to the text"
         message = "the row has a stray quotation mark"
-        if "unexpected end" in str(error):
+        reason = error.args[0]
+        if "unexpected end" in reason:
             message = "a quotation mark is not closed"
-        elif "field limit" in str(error):
+        elif "field limit" in reason:
             message = f"a cell has more than {csv.field_size_limit():,} characters"
         return rows, [error_at(Position(source, begins + skipped), message, hint)]
     return rows, []

@@ -22,8 +22,8 @@ Said = tuple[str, str]  # source command and form
 def paraphrases() -> Iterator[tuple[str, Said]]:
     """The words of each paraphrase with a known source, in class tokens, and what it was said for."""
     from annotations.models import World
+    from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.words import words
-    from parser_service.results.corpus import read_corpus, source_commands
     from parser_service.runs.knowledge import anonymizer_of
 
     anonymize = anonymizer_of(World.objects.get(name=WORLD))

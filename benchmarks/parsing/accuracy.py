@@ -43,9 +43,9 @@ from benchmarks.parsing.accuracy_figures import (  # noqa: E402
     is_current,
     read_figures,
 )
+from parser_service.benchmarking.benchmark_cells import CellFile  # noqa: E402
 from parser_service.parsers.conditions import PAPERS_SETTINGS, Protocol  # noqa: E402
 from parser_service.parsers.registry import PARSERS  # noqa: E402
-from parser_service.results.benchmark_cells import CellFile  # noqa: E402
 from parser_service.results.published import published_accuracy  # noqa: E402
 from parser_service.results.table_parts import MARK, MAY_KNOW_CORPORA, may_know_corpora  # noqa: E402
 

@@ -29,8 +29,8 @@ def support_of_forms(protocol: str, splits: int) -> Iterator[dict[str, object]]:
     A held-out form that no step arrives at has support 0.
     """
     from annotations.models import World
+    from parser_service.benchmarking.corpus import new_split
     from parser_service.parsers.generation import reach
-    from parser_service.results.corpus import new_split
     from parser_service.runs.knowledge import knowledge_of
 
     knowledge = knowledge_of(World.objects.get(name=WORLD), protocol)

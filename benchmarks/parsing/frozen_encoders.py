@@ -22,9 +22,9 @@ from benchmarks.fresh_site import DATA, WORLD, Site
 if TYPE_CHECKING:
     from torch import Tensor
 
+    from parser_service.benchmarking.corpus import Corpus
     from parser_service.neural.sentence_encoder import SentenceEncoder
     from parser_service.parsers.interface import Knowledge, Pair
-    from parser_service.results.corpus import Corpus
 
 SLOT = 0.2  # of a cosine, for each slot that does not match
 SOURCES = {"gen": ["generated"], "para": ["paraphrased"], "gen+para": ["generated", "paraphrased"]}
@@ -61,10 +61,10 @@ def main() -> None:
 
 def lines(name: str) -> Iterator[str]:
     from annotations.models import World
+    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.neural.pretrained import load_encoder
     from parser_service.neural.sentence_encoder import SentenceEncoder
     from parser_service.parsers.pretrained_files import encoders_folder
-    from parser_service.results.corpus import read_corpus
     from parser_service.runs.knowledge import knowledge_of
 
     began = time.process_time()

@@ -54,9 +54,9 @@ def hold_out(
 def train(protocol: str, setting: str, seed: int) -> tuple[Parser, dict[str, list[Pair]]]:
     """Return the parser and what to ask it."""
     from annotations.models import World
+    from parser_service.benchmarking.corpus import read_corpus, source_commands
     from parser_service.parsers.conditions import Setting, sources_of
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.results.corpus import read_corpus, source_commands
     from parser_service.runs.knowledge import anonymizer_of, knowledge_of
 
     world = World.objects.get(name=WORLD)

@@ -69,9 +69,9 @@ def ask_nobody(
     criterion: str, knowledge: Knowledge, **config: Any
 ) -> tuple[list[Pair], list[Question]]:
     """Return the validation paraphrases, and the question about each."""
+    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.llm.config import LanguageModelConfig
     from parser_service.parsers.llm.language_model import LanguageModel
-    from parser_service.results.corpus import read_corpus
 
     corpus = read_corpus(DATA / "walker2019", criterion)
     model = LanguageModel(LanguageModelConfig(model="any", **config), 0, knowledge)

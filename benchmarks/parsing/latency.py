@@ -38,8 +38,8 @@ WARM_UP = 10
 def measure(name: str, protocol: str, saved: Path | None) -> None:
     """Train or load a parser and print its line."""
     from annotations.models import World
+    from parser_service.benchmarking.corpus import read_corpus
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.results.corpus import read_corpus
     from parser_service.runs.knowledge import knowledge_of
 
     corpus, sources = read_corpus(DATA / "walker2019", "command"), ("generated", "paraphrased")

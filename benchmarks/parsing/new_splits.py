@@ -54,9 +54,9 @@ def table_of(
 
 def _train(split: int, setting: str) -> Trained:
     from annotations.models import World
+    from parser_service.benchmarking.missing_cells import load_corpus
     from parser_service.parsers.conditions import Setting, sources_of
     from parser_service.parsers.registry import load_class, make_config
-    from parser_service.results.missing_cells import load_corpus
     from parser_service.runs.knowledge import knowledge_of
 
     world = World.objects.get(name=WORLD)

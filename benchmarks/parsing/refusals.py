@@ -78,8 +78,8 @@ def main() -> None:
     saved = arguments.parse_args().saved
     with tempfile.TemporaryDirectory() as folder:
         Site(Path(folder) / "var").enter()
+        from parser_service.benchmarking.corpus import read_corpus
         from parser_service.neural.ranker.form_ranker import FormRanker
-        from parser_service.results.corpus import read_corpus
 
         corpus, sources = read_corpus(DATA / "walker2019", "command"), ("generated", "paraphrased")
         if saved:

@@ -14,10 +14,10 @@ import argparse
 from torch.profiler import ProfilerActivity, profile
 
 from benchmarks.fresh_site import DATA
+from parser_service.benchmarking.corpus import read_corpus
 from parser_service.neural.ranker.form_ranker import FormRanker
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import EpochReport, Observer, Pair
-from parser_service.results.corpus import read_corpus
 
 PASSES = 6
 MOST_OPERATIONS = 12

@@ -9,9 +9,9 @@ from typing import Any
 
 from annotations.language.corpus import Criterion
 from annotations.language.texts import Refusal
+from parser_service.benchmarking.trials import Declared, TrialColumn
 from parser_service.parsers.conditions import PAPERS_SETTINGS, SOURCES, TRAIN_SOURCES, Protocol
 from parser_service.parsers.registry import PARSERS, config_fields
-from parser_service.results.trials import Declared, TrialColumn
 
 COLUMN_PARTS: tuple[Sequence[str], Sequence[str], Sequence[str]] = (
     [str(setting) for setting in PAPERS_SETTINGS],

@@ -26,9 +26,9 @@ from annotations.models import Duty, Scope, SemanticTemplate
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.stored_problems import as_json
 from annotations.showing.paging import LARGEST_INTEGER
-from annotations.web.description.predicate_pages import PREDICATES
+from annotations.web.description.predicate_noun import PREDICATES
 from annotations.web.description.predicate_rest import NewPredicate
-from annotations.web.description.production_pages import PRODUCTIONS
+from annotations.web.description.production_noun import PRODUCTIONS
 from annotations.web.description.production_rest import NewProduction
 from annotations.web.description.template_forms import consequences_of_form
 from annotations.web.description.template_rest import TemplateChange, TemplateRoute

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from hashlib import sha256
-from typing import Any
 
 from django.db.models import QuerySet
 from django.http import HttpResponse
@@ -12,11 +10,8 @@ from django.http.response import HttpResponseBase
 from django.shortcuts import render
 from django.utils.cache import get_conditional_response, patch_cache_control
 
-from annotations.generation.class_uses import count_uses
 from annotations.models import Duty, Entity, EntityClass, World
 from annotations.people.access import WorldRequest, world_view
-from annotations.web.description.class_forms import EntityClassForm
-from annotations.web.editing.nouns import Noun
 
 
 @world_view(Duty.VIEW)
@@ -25,19 +20,6 @@ def entity_classes(request: WorldRequest, world: World) -> HttpResponse:
     counts = Entity.objects.filter(ontology__world=world).count_by_class()
     rows = [(row, counts.get(row.token, 0)) for row in world.entity_classes.all()]
     return render(request, "annotations/description/entity_classes.html", {"rows": rows})
-
-
-class EntityClassNoun(Noun):
-    form = EntityClassForm
-    template = "annotations/description/entity_class.html"
-
-    def context(
-        self, request: WorldRequest, world: World, row: Any | None, form: EntityClassForm
-    ) -> Mapping[str, Any]:
-        return {"uses": count_uses(row)} if row else {}
-
-
-ENTITY_CLASSES = EntityClassNoun()
 
 
 @world_view(Duty.VIEW)

@@ -6,7 +6,7 @@ from rest_framework import serializers
 
 from annotations.models import EntityClass
 from annotations.web.description.class_forms import EntityClassForm
-from annotations.web.description.class_pages import ENTITY_CLASSES
+from annotations.web.description.class_noun import ENTITY_CLASSES
 from annotations.web.editing.noun_rest import FormFields, NounViewSet
 
 

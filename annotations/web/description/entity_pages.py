@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from django.contrib import messages
@@ -13,57 +12,13 @@ from django.shortcuts import redirect, render
 from annotations.editing.edits import add_many
 from annotations.language.texts import say_count
 from annotations.models import Duty, Entity, World
-from annotations.models.description import ProblemSubject
-from annotations.people.access import READ_AND_WRITE, PageRequest, WorldRequest, world_view
-from annotations.rows.from_rows import classes_of
-from annotations.rows.occurrences import MOST_SHOWN, occurrences_of
-from annotations.showing.listing import Listing, Sort
-from annotations.web.description.description_filters import EntityFilters
+from annotations.people.access import READ_AND_WRITE, WorldRequest, world_view
 from annotations.web.description.entity_forms import (
     EntitiesForm,
-    EntityForm,
     ontology_in,
 )
-from annotations.web.editing.nouns import Noun
+from annotations.web.description.entity_noun import asked_class
 from annotations.web.forms import posted
-
-
-class EntityNoun(Noun):
-    form = EntityForm
-    template = "annotations/description/entity.html"
-    new_template = "annotations/description/entity_new.html"
-    list_template = "annotations/description/ontology.html"
-    filters = EntityFilters
-    sorts = {
-        "position": Sort("File", "position"),
-        "text": Sort("Name", "text"),
-        "class": Sort("Class", "entity_class"),
-    }
-    page_size = 100
-
-    def context(
-        self, request: WorldRequest, world: World, row: Any | None, form: EntityForm
-    ) -> Mapping[str, Any]:
-        return {"occurrences": occurrences_of(row), "most": MOST_SHOWN} if row else {}
-
-    def list_context(self, world: World, listing: Listing) -> Mapping[str, Any]:
-        """Return the number of entities by class, and what the checker says of their files."""
-        counts = Entity.objects.filter(ontology__world=world).count_by_class()
-        return {
-            "classes": counted_classes(world, counts),
-            "problems": world.problems.filter(subject=ProblemSubject.ONTOLOGY),
-        }
-
-    def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
-        return asked_class(request)
-
-
-ENTITIES = EntityNoun()
-
-
-def counted_classes(world: World, counts: Mapping[str, int]) -> dict[str, int]:
-    """Return the counts in the order of the world's classes, without those of no entity."""
-    return {name: counts[name] for name in classes_of(world).tokens if name in counts}
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)
@@ -97,7 +52,3 @@ def unsaved_rows(world: World, form: EntitiesForm) -> list[Entity]:
         )
         for each in form.additions.new
     ]
-
-
-def asked_class(request: PageRequest) -> dict[str, str]:
-    return {"entity_class": request.GET.get("entity_class", "object")}

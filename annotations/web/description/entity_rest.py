@@ -10,7 +10,7 @@ from annotations.language.forms import MAX_TOKEN
 from annotations.language.texts import MAX_ENTITY
 from annotations.models import Entity
 from annotations.web.description.description_filters import EntityFilters
-from annotations.web.description.entity_pages import ENTITIES
+from annotations.web.description.entity_noun import ENTITIES
 from annotations.web.editing.noun_rest import NounViewSet
 from annotations.web.rest.fields import AttributesField, Fields, LineField
 

@@ -7,7 +7,7 @@ from rest_framework import serializers
 from annotations.models import Predicate
 from annotations.web.description.description_filters import PredicateFilters
 from annotations.web.description.predicate_forms import PredicateForm
-from annotations.web.description.predicate_pages import PREDICATES
+from annotations.web.description.predicate_noun import PREDICATES
 from annotations.web.editing.noun_rest import FormFields, NounViewSet
 from annotations.web.rest.fields import LineField
 

@@ -1,121 +1,18 @@
-"""The command grammar: its productions, checked as one types, with what saving would do."""
+"""The command grammar: its lines checked as one types."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from itertools import groupby
-from typing import Any
+from django.http import JsonResponse
 
-from django.http import HttpResponse, JsonResponse
-from django.shortcuts import render
-from django.urls import reverse
-
-from annotations.generation.production_check import (
-    ProductionEdit,
-    assist_production,
-    check_production,
-    consequences_of_production,
-)
-from annotations.language.texts import MAX_PATTERN
-from annotations.models import Duty, Production, SemanticTemplate, World
-from annotations.models.description import ProblemSubject
+from annotations.generation.production_check import assist_production
+from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
-from annotations.showing.listing import Listing, Sort
-from annotations.web.description.description_filters import ProductionFilters
-from annotations.web.description.production_forms import (
-    ProductionForm,
-    sources_of,
-)
-from annotations.web.description.template_pages import has_grammar
-from annotations.web.editing.consequence_presentation import groups_of
-from annotations.web.editing.nouns import Noun
-from annotations.web.forms import choice_field
-
-
-class ProductionNoun(Noun):
-    form = ProductionForm
-    template = "annotations/description/production.html"
-    preview_template = "annotations/description/_production_preview.html"
-    list_template = "annotations/description/grammar.html"
-    filters = ProductionFilters
-    sorts = {
-        "position": Sort("File and line", "position"),
-        "nonterminal": Sort("Nonterminal", "nonterminal"),
-    }
-
-    def list_context(self, world: World, listing: Listing) -> Mapping[str, Any]:
-        """Return the productions by nonterminal, with the checker's problems."""
-        grouped = groupby(listing.rows, key=lambda row: (row.source, row.nonterminal))
-        return {
-            "groups": [(*key, list(lines)) for key, lines in grouped],
-            "problems": world.problems.filter(subject=ProblemSubject.GRAMMAR),
-        }
-
-    def context(
-        self, request: WorldRequest, world: World, row: Any | None, form: ProductionForm
-    ) -> Mapping[str, Any]:
-        if row is None:
-            source = request.GET.get("source", "") or sources_of(world)[0]
-            return {"checked": form.checked, **_completion(world, source)}
-        lines = Production.objects.filter(grammar__world=world, nonterminal=row.nonterminal)
-        templates = SemanticTemplate.objects.filter(grammar__world=world)
-        return {
-            "checked": form.checked or check_production(ProductionEdit.of_stored(row)),
-            "lines": lines.exclude(pk=row.pk),
-            "meanings": templates.for_nonterminal(row.nonterminal),
-            **_completion(world, row.source),
-        }
-
-    def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
-        return {name: request.GET.get(name, "") for name in ("nonterminal", "source")}
-
-    def missing(self, request: WorldRequest, world: World) -> HttpResponse | None:
-        if has_grammar(world):
-            return None
-        return render(request, "annotations/description/production_needs_grammar.html")
-
-    def merging(self, world: World, row: Any) -> Mapping[str, Any]:
-        return {"check_url": f"{reverse('production_check', args=[world.name])}?row={row.pk}"}
-
-    def preview(
-        self, request: WorldRequest, world: World, form: ProductionForm
-    ) -> Mapping[str, Any]:
-        """Return what the typed production expands to, and what saving it would change."""
-        edit = _edit_typed(form)
-        checked = check_production(edit) if edit else None
-        if edit is None or checked is None or checked.has_errors:
-            return {"checked": checked}
-        expected = consequences_of_production(edit)
-        return {"checked": checked, "expected": expected, "groups": groups_of(expected)}
-
-
-PRODUCTIONS = ProductionNoun()
+from annotations.web.description.production_forms import ProductionForm
+from annotations.web.description.production_noun import PRODUCTIONS, edit_typed
 
 
 @world_view(Duty.ANNOTATE, WRITE)
 def production_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
-    edit = _edit_typed(ProductionForm(world, PRODUCTIONS.row_in(request, world), request.POST))
+    edit = edit_typed(ProductionForm(world, PRODUCTIONS.row_in(request, world), request.POST))
     return JsonResponse(assist_production(edit) if edit else {"problems": [], "slots": []})
-
-
-def _edit_typed(form: ProductionForm) -> ProductionEdit | None:
-    """Return the production as typed, or None while a field is empty or invalid."""
-    form.is_valid()
-    names = ("source", "nonterminal", "expansion")
-    source, nonterminal, expansion = (
-        form.cleaned_data.get(name) or form[name].value() or "" for name in names
-    )
-    if not expansion.strip() or not choice_field(form, "source").valid_value(source):
-        return None
-    if len(expansion) > MAX_PATTERN or "\0" in f"{source}{nonterminal}{expansion}":
-        return None
-    if "nonterminal" in form.errors:
-        return None
-    return ProductionEdit(form.world, source, nonterminal, expansion, form.row)
-
-
-def _completion(world: World, source: str) -> dict[str, Any]:
-    """Return the task category whose nonterminals the editor offers."""
-    edit = ProductionEdit(world, source, "", "")
-    return {"category": next(edit.categories(), None)}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from django.contrib import messages
@@ -11,18 +10,14 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 
 from annotations.editing.recipe_books import replace_book, shipped_book_of, version_of
-from annotations.generation.recipe_check import problems_by_row, try_row
+from annotations.generation.recipe_check import problems_by_row
 from annotations.language.plans import default_book, read_primitive, read_recipe, shipped_books
 from annotations.language.texts import Problem, Refusal
-from annotations.models import Duty, Primitive, Recipe, World
+from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.web.description.recipe_forms import (
-    BookRowForm,
-    PrimitiveForm,
     RecipeBookForm,
-    RecipeForm,
 )
-from annotations.web.editing.nouns import Noun
 from annotations.web.editing.undo import say_with_undo
 
 
@@ -81,54 +76,6 @@ def recipe_book(request: WorldRequest, world: World) -> HttpResponse:
         here = reverse("recipe_book", kwargs={"world": world.name})
         say_with_undo(request, sentence, here, **before, version=version_of(world))
     return redirect("recipes", world=world.name)
-
-
-class BookNoun(Noun):
-    """A row of the book, with what is wrong with it and what the robot does by it."""
-
-    form: type[BookRowForm]
-    template = "annotations/description/recipe.html"
-    preview_template = "annotations/description/_recipe_preview.html"
-
-    def context(
-        self, request: WorldRequest, world: World, row: Any | None, form: BookRowForm
-    ) -> Mapping[str, Any]:
-        kind, model = self.kind.name, form.model
-        return {
-            "kind": kind,
-            "preview": f"{kind}_preview",
-            "name": self.title_of(row) if row else "",
-            "text": row.text if row else "",
-            "checked": try_row(world, model, row.text, row) if row else None,
-        }
-
-    def preview(self, request: WorldRequest, world: World, form: BookRowForm) -> Mapping[str, Any]:
-        text = request.POST.get("text", "").replace("\0", "")
-        text = text.replace("\r\n", "\n").replace("\n", " ")
-        if not text.strip():
-            return {"text": text}
-        chosen = request.POST.get("example", "")
-        return {"text": text, "checked": try_row(world, form.model, text, form.row, chosen)}
-
-    def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
-        return {"text": request.GET.get("text", "")}
-
-
-class RecipeNoun(BookNoun):
-    form = RecipeForm
-
-    def title_of(self, row: Recipe) -> str:
-        return str(read_recipe(row.text).pattern)
-
-
-class PrimitiveNoun(BookNoun):
-    form = PrimitiveForm
-
-    def title_of(self, row: Primitive) -> str:
-        return row.name
-
-
-RECIPES, PRIMITIVES = RecipeNoun(), PrimitiveNoun()
 
 
 def _shipped(value: Any) -> tuple[None, Any, list[Problem]]:

@@ -18,7 +18,7 @@ from annotations.rows.from_rows import recipe_book_of
 from annotations.rows.stored_problems import as_json
 from annotations.web.description.check_rest import Check, FoundSerializer, replaced_field
 from annotations.web.description.recipe_forms import RecipeBookForm
-from annotations.web.description.recipe_pages import PRIMITIVES, RECIPES
+from annotations.web.description.recipe_noun import PRIMITIVES, RECIPES
 from annotations.web.editing.noun_rest import NounRoute, NounViewSet
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.matching import etag_of, require_match

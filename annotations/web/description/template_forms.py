@@ -108,6 +108,11 @@ class TemplateForm(NounForm):
         return found
 
 
+def has_grammar(world: World) -> bool:
+    """Return whether the world has task categories that a template could belong to."""
+    return TaskCategory.objects.filter(grammar__world=world).exists()
+
+
 def example_template(world: World) -> dict[str, str]:
     """Return a pattern and a form of this world to show in the empty fields of a new template."""
     template = SemanticTemplate.objects.filter(

@@ -48,10 +48,10 @@ from annotations.web.description.template_forms import (
     TemplateForm,
     change_to,
     consequences_of_form,
+    has_grammar,
 )
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.merge_pages import merge_page, save_edit
-from annotations.web.editing.nouns import Noun
 from annotations.web.forms import posted
 
 SORTS = {
@@ -64,15 +64,6 @@ SORTS = {
 
 # Shown above an empty editor, and looked at for them.
 EXAMPLES, MOST_EXAMPLES = 3, 100
-
-
-class TemplateNoun(Noun):
-    """Templates are edited with their commands and what a change would do, on pages of their own."""
-
-    form = TemplateForm
-
-
-TEMPLATES = TemplateNoun()
 
 
 @world_view(Duty.VIEW)
@@ -126,11 +117,6 @@ def has_shared_slot(row: SemanticTemplate) -> bool:
     sides = (places_in_pattern(row.pattern), places_in_form(row.form))
     in_pattern, in_form = ({place.key for place in side} - {None} for side in sides)
     return bool(in_pattern & in_form)
-
-
-def has_grammar(world: World) -> bool:
-    """Return whether the world has task categories that a template could belong to."""
-    return TaskCategory.objects.filter(grammar__world=world).exists()
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE)

@@ -15,6 +15,10 @@ from annotations.language.corpus import Criterion
 from annotations.language.texts import Refusal
 from annotations.management.base import find_world
 from annotations.models import World
+from parser_service.benchmarking.benchmark_cells import CellFile, TrialGroup
+from parser_service.benchmarking.missing_cells import find_missing, measure_all
+from parser_service.benchmarking.paraphrase_sources import find_sources
+from parser_service.benchmarking.trials import trials
 from parser_service.management.options import (
     read_columns,
     read_configurations,
@@ -23,10 +27,6 @@ from parser_service.management.options import (
 )
 from parser_service.parsers.conditions import PAPERS_SETTINGS, Protocol
 from parser_service.parsers.registry import PARSERS
-from parser_service.results.benchmark_cells import CellFile, TrialGroup
-from parser_service.results.missing_cells import find_missing, measure_all
-from parser_service.results.paraphrase_sources import find_sources
-from parser_service.results.trials import trials
 
 
 class Command(BaseCommand):

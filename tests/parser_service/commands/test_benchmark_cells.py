@@ -17,12 +17,12 @@ from annotations.language.world import Ontology, infer_signatures
 from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.analysis.probabilities import NO_PROBABILITY, probability_of
 from parser_service.analysis.scores import Judgement
+from parser_service.benchmarking.benchmark_cells import TrialGroup, declared_by
+from parser_service.benchmarking.corpus import Corpus
+from parser_service.benchmarking.measured_answers import PairAnswer, PartAnswers
+from parser_service.benchmarking.trials import TrialColumn, trials
 from parser_service.management.options import read_column
 from parser_service.parsers.interface import Knowledge, Pair, ScoreKind
-from parser_service.results.benchmark_cells import TrialGroup, declared_by
-from parser_service.results.corpus import Corpus
-from parser_service.results.measured_answers import PairAnswer, PartAnswers
-from parser_service.results.trials import TrialColumn, trials
 from tests.parser_service.made_up import make_folder
 
 RIGHT, WRONG = Judgement(True, True, True), Judgement()

@@ -7,8 +7,8 @@ import shutil
 import pytest
 
 from annotations.exchange.generator_import import import_generator
+from parser_service.benchmarking.corpus import new_split, read_corpus, source_commands
 from parser_service.management.options import read_seeds
-from parser_service.results.corpus import new_split, read_corpus, source_commands
 from tests.parser_service.commands.benchmark_run import run
 from tests.parser_service.made_up import made_up_pairs
 

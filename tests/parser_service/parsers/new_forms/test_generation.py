@@ -2,10 +2,10 @@ from annotations.language.forms import read_form
 from annotations.language.grammar import Grammar, read_production
 from annotations.language.templates import TaskCategory, read_template
 from annotations.language.world import Ontology, infer_signatures
+from parser_service.benchmarking.corpus import read_corpus
 from parser_service.parsers.generation import generate_candidates
 from parser_service.parsers.interface import Knowledge, Pair
 from parser_service.parsers.pool import CandidateForm, Pool, WayToForm
-from parser_service.results.corpus import read_corpus
 from tests.parser_service.parsers.new_forms.conftest import OBJECT, PLACE, ROOM, bring, find
 
 LEFT, RIGHT = (

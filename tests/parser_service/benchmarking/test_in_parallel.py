@@ -14,12 +14,12 @@ from django.conf import settings as site
 from django.core.management import CommandError, call_command
 
 from annotations.exchange.generator_import import import_generator
+from parser_service.benchmarking.benchmark_cells import TrialGroup
+from parser_service.benchmarking.corpus import read_corpus
+from parser_service.benchmarking.in_parallel import measure_in_parallel
+from parser_service.benchmarking.trials import trials
 from parser_service.management.options import read_column
 from parser_service.parsers.interface import Knowledge
-from parser_service.results.benchmark_cells import TrialGroup
-from parser_service.results.corpus import read_corpus
-from parser_service.results.in_parallel import measure_in_parallel
-from parser_service.results.trials import trials
 from tests.parser_service.made_up import TINY, make_folder
 from tests.parser_service.worker_process import ROOT
 from tests.waiting import PATIENCE_SECONDS, wait_for

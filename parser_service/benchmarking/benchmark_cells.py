@@ -22,11 +22,16 @@ from annotations.language.texts import Refusal
 from annotations.language.world import Ontology, infer_signatures
 from parser_service.analysis.plan_agreement import PlanAgreement
 from parser_service.analysis.scores import score
+from parser_service.benchmarking.corpus import Corpus
+from parser_service.benchmarking.measured_answers import (
+    PartAnswers,
+    ask,
+    ask_cross_fitted,
+    intervals,
+)
+from parser_service.benchmarking.trials import Declared, Trial
 from parser_service.parsers.interface import Knowledge, Pair, Parser
 from parser_service.parsers.registry import entry, load_class, make_config
-from parser_service.results.corpus import Corpus
-from parser_service.results.measured_answers import PartAnswers, ask, ask_cross_fitted, intervals
-from parser_service.results.trials import Declared, Trial
 
 Cell = dict[str, Any]
 # Where the code is that decides figures.

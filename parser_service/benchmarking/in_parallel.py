@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import django
 
 if TYPE_CHECKING:  # A new process imports this file before Django is ready for models.
-    from parser_service.results.benchmark_cells import Cell, TrialGroup
+    from parser_service.benchmarking.benchmark_cells import Cell, TrialGroup
 
 
 @dataclass(slots=True)

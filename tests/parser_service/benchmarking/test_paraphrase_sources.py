@@ -8,9 +8,9 @@ from annotations.exchange.generator_import import import_generator
 from annotations.generation.generating import generate_pairs
 from annotations.language.corpus import Criterion
 from annotations.models import World
-from parser_service.results.corpus import Corpus, new_split, read_corpus, source_commands
-from parser_service.results.missing_cells import load_corpus
-from parser_service.results.paraphrase_sources import find_sources
+from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus, source_commands
+from parser_service.benchmarking.missing_cells import load_corpus
+from parser_service.benchmarking.paraphrase_sources import find_sources
 from parser_service.runs.knowledge import anonymizer_of
 from tests.parser_service.made_up import make_folder
 

@@ -11,17 +11,17 @@ from pathlib import Path
 from annotations.language.corpus import TRIPLES_FILE, Criterion
 from annotations.language.texts import Refusal
 from annotations.models import World
-from parser_service.parsers.interface import Knowledge
-from parser_service.results.benchmark_cells import (
+from parser_service.benchmarking.benchmark_cells import (
     Cell,
     CellFile,
     TrialGroup,
     agreement_without_world,
 )
-from parser_service.results.corpus import Corpus, new_split, read_corpus
-from parser_service.results.in_parallel import measure_in_parallel
-from parser_service.results.paraphrase_sources import Sources, find_sources
-from parser_service.results.trials import Trial
+from parser_service.benchmarking.corpus import Corpus, new_split, read_corpus
+from parser_service.benchmarking.in_parallel import measure_in_parallel
+from parser_service.benchmarking.paraphrase_sources import Sources, find_sources
+from parser_service.benchmarking.trials import Trial
+from parser_service.parsers.interface import Knowledge
 from parser_service.runs.content_key import knowledge_hash
 from parser_service.runs.knowledge import knowledge_of, plan_agreement_of
 

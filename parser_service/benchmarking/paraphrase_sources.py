@@ -12,7 +12,7 @@ from annotations.language.corpus import TRIPLES_FILE
 from annotations.language.texts import LanguageError, Refusal
 from annotations.models import World
 from annotations.rows.from_rows import task_categories
-from parser_service.results.corpus import read_corpus, source_commands
+from parser_service.benchmarking.corpus import read_corpus, source_commands
 
 
 @dataclass(frozen=True)
