@@ -9,10 +9,8 @@ import sys
 import tempfile
 import threading
 import time
-from urllib.parse import urlencode
 
 import pytest
-from django.test import Client
 
 from annotations.web.rest.streaming import BrokenOff
 from gpsr_site.processes import web_server_commands
@@ -105,41 +103,6 @@ def test_a_browser_that_sends_too_much_reads_why(site, path):
     answer = site.answer_to(whole)
     assert answer.startswith(b"HTTP/1.1 413 ") and b" 64 kB" in answer
     assert (b"Content-Type: application/problem+json" in answer) == path.startswith("/api/")
-
-
-def test_a_request_that_arrives_in_pieces_is_answered(site):
-    connection = site.connect(b"GET /healthz HTTP/1.1\r\nHost: loc")
-    assert site.status("/healthz") == 200  # the server has read the first piece
-    connection.sendall(b"alhost\r\nConnection: close\r\n\r\n")
-    assert connection.recv(1000).startswith(b"HTTP/1.1 200 ")
-
-
-def test_eight_templates_that_explode_do_not_stop_the_site(site, sample, annotator):
-    client = Client()
-    client.force_login(annotator)
-    category = sample.world.grammar.task_categories.get()
-    typed = {"pattern": "(a|b) " * 60 + "$vbfind", "form": "(go $vbfind)"}
-    body = urlencode({**typed, "task_category": category.pk})
-    token = "a" * 32
-    cookies = f"sessionid={client.cookies['sessionid'].value}; csrftoken={token}"
-    asked = [
-        site.connect(
-            head(
-                "/w/home/templates/check/",
-                f"Cookie: {cookies}",
-                f"X-CSRFToken: {token}",
-                "Content-Type: application/x-www-form-urlencoded",
-                f"Content-Length: {len(body)}",
-                "Connection: close",
-            )
-            + body.encode()
-        )
-        for _ in range(8)
-    ]
-    assert site.status("/healthz") == 200
-    for connection in asked:
-        assert connection.recv(1000).startswith(b"HTTP/1.1 200 ")
-        connection.close()
 
 
 @pytest.mark.processes
