@@ -34,7 +34,7 @@ DOCS_DIR = BASE_DIR / "docs"  # what the pages below /docs/ show
 # Weights come from folders and packages; nothing is fetched unless the environment says so.
 os.environ.setdefault("HF_HUB_OFFLINE", "1")
 
-# --- Serving: where the site is served, to whom, and how long a request may take ---
+# --- Serving: where the site is served, and to whom ---
 
 DEBUG = env.bool("DEBUG", default=False)
 HOST = env.str("HOST", default="127.0.0.1")
@@ -68,8 +68,6 @@ TRUSTED_PROXIES = [
     ip_network(network)
     for network in env.list("TRUSTED_PROXIES", default=["127.0.0.0/8", "::1"] if HTTPS else [])
 ]
-# How long a request may take; what reads files or makes many rows may take ten times as long.
-REQUEST_SECONDS = env.float("REQUEST_SECONDS", default=60)
 
 # --- Data: where rows are stored, and how much may be uploaded ---
 
@@ -92,10 +90,9 @@ else:
             "keepalives_idle": 10,
             "keepalives_interval": 5,
             "keepalives_count": 3,
+            "tcp_user_timeout": 25_000,  # milliseconds
             **_database.get("OPTIONS", {}),
         }
-        # Waits in Python, where a request that is over its time can be interrupted.
-        os.environ.setdefault("PSYCOPG_WAIT_FUNC", "wait_poll")
 # Opening a connection costs as much as twenty queries: SQLite reads the whole schema anew.
 _database["CONN_MAX_AGE"] = 60
 DATABASES = {"default": _database}
@@ -201,8 +198,7 @@ INSTALLED_APPS = [
 MIDDLEWARE = [
     "gpsr_site.web.request_log.RequestLog",
     "gpsr_site.web.api_addresses.ApiAddresses",
-    "gpsr_site.web.thread_shares.RefuseWhatWaited",
-    "gpsr_site.web.deadlines.Deadline",
+    "gpsr_site.web.thread_shares.ThreadShares",
     "gpsr_site.web.proxies.ClientAddress",
     "django.middleware.security.SecurityMiddleware",
     "whitenoise.middleware.WhiteNoiseMiddleware",
@@ -397,7 +393,7 @@ LOGGING = {
             "filters": ["secrets", "refusals"],
         }
     },
-    # Writers and batches wait for each other as a rule (gpsr_site.web.thread_shares): a line for each says nothing.
-    "loggers": {"waitress.queue": {"level": "ERROR"}},
+    # It warns of each request that waits for a thread, and says where it listens, as `make run` does.
+    "loggers": {"waitress": {"level": "WARNING"}, "waitress.queue": {"level": "ERROR"}},
     "root": {"handlers": ["console"], "level": env.str("LOG_LEVEL", default="INFO")},
 }

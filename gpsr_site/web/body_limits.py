@@ -20,15 +20,6 @@ ORDINARY_BYTES = 1024 * 1024
 ENVELOPE_BYTES = 64 * 1024
 
 
-def largest_body(path: str, is_logged_in: bool) -> int:
-    """Return how many bytes a request to ``path`` may bring; more is answered with 413."""
-    if not is_logged_in:
-        return ANONYMOUS_BYTES
-    if allowance_at(path).takes_files:
-        return settings.UPLOAD_MAX_BYTES + ENVELOPE_BYTES
-    return ORDINARY_BYTES
-
-
 class LimitBodies:
     """Middleware: answer 413 from ``Content-Length``, before any of the body is parsed.
 
@@ -57,7 +48,7 @@ class LimitBodies:
         if not _may_send_files(sender, allowance):
             who = WHO_MAY[allowance.duty] if allowance.duty else "administrators of this site"
             return self._refuse(request, ORDINARY_BYTES, f"Only {who} send files here.")
-        largest = largest_body(request.path_info, is_logged_in=True)
+        largest = settings.UPLOAD_MAX_BYTES + ENVELOPE_BYTES
         if length > largest:
             return self._refuse(request, largest, "Send the files in several parts.")
         return self.get_response(request)

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 from http import HTTPStatus
 from typing import Any
 
-from django.conf import settings
 from django.http import HttpResponseBase, StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
@@ -37,7 +36,7 @@ from parser_service.serving.preparing import MOST_ALTERNATIVES, MOST_CANDIDATES,
 from parser_service.web.serving.plan_fields import JointPlanField, PlanField
 
 MOST_LINES = 5_000  # of a batch that is answered at once
-SHARE_OF_TIME = 0.8  # of REQUEST_SECONDS; then a last line says that the batch breaks off
+MOST_SECONDS = 50  # then a last line says that the batch breaks off
 MOST_KEY = 2**63 - 1
 
 
@@ -283,9 +282,8 @@ class ParseRoute(APIView):
                 "too_many_lines",
                 HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
             )
-        seconds = SHARE_OF_TIME * settings.REQUEST_SECONDS
         answers = client().parse_lines(
-            self.world.name, lines, **query.validated_data, most_seconds=seconds
+            self.world.name, lines, **query.validated_data, most_seconds=MOST_SECONDS
         )
         return StreamingHttpResponse(
             _all_of(answers, count), content_type=f"{JSON_LINES}; charset=utf-8"

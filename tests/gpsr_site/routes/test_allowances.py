@@ -13,7 +13,7 @@ from rest_framework.parsers import FileUploadParser, MultiPartParser
 
 from annotations.people.allowances import allowance_at
 from gpsr_site import web
-from gpsr_site.web.body_limits import ORDINARY_BYTES, largest_body
+from gpsr_site.web.body_limits import ORDINARY_BYTES
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.listing import ALL_ROUTES, ApiRoute
 
@@ -60,10 +60,8 @@ def test_a_view_declares_that_it_takes_files_if_it_does(sample):
 
 @pytest.mark.parametrize("name", TAKING)
 def test_files_of_the_largest_size_arrive_where_they_are_taken(name, sample, client_as, settings):
-    """Also where the web server judges the size, before anybody is known."""
     settings.UPLOAD_MAX_BYTES = 2 * ORDINARY_BYTES
     path = address(name, sample)
-    assert largest_body(path, is_logged_in=True) > settings.UPLOAD_MAX_BYTES
     client = client_as("superuser")
     assert sent(client, path, settings.UPLOAD_MAX_BYTES) != TOO_MUCH
     assert sent(client, path, settings.UPLOAD_MAX_BYTES + ORDINARY_BYTES) == TOO_MUCH
@@ -111,6 +109,6 @@ def test_an_odd_address_takes_no_files_and_costs_little(path):
 
 
 def test_no_limit_goes_by_a_pattern_of_addresses():
-    for module in ("body_limits", "deadlines", "server"):
+    for module in ("body_limits", "thread_shares"):
         source = Path(web.__file__).with_name(f"{module}.py").read_text()
         assert not re.search(r"""["']\^?/(w|api|worlds)\b""", source), module

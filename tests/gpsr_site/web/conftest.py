@@ -1,4 +1,4 @@
-"""The real web server in a thread of the test, on the test's database."""
+"""The real web server in a thread of the tests, on their database."""
 
 from __future__ import annotations
 
@@ -6,22 +6,34 @@ import socket
 import threading
 import urllib.error
 import urllib.request
-from dataclasses import dataclass
+from typing import Any
 
 import pytest
+import waitress
+from django.core.wsgi import get_wsgi_application
 from django.db import connections
 
-from gpsr_site.web import server as web_server
-from gpsr_site.web.server import WebServer
-from gpsr_site.wsgi import application
+from gpsr_site.web.server import OPTIONS, listen
 from tests.waiting import PATIENCE_SECONDS
 
 
-@dataclass(frozen=True)
 class Site:
-    """Where the server listens."""
+    """A server that nothing can stop, so one does for all tests; each says what ``application`` it serves."""
 
-    port: int
+    application: Any
+
+    def __init__(self) -> None:
+        (listening,) = listen("127.0.0.1", 0)
+        self.port: int = listening.getsockname()[1]
+        # A client may be slower than the server has patience for: what a test expects is never its giving up.
+        options = OPTIONS | {"sockets": [listening], "channel_timeout": 2 * PATIENCE_SECONDS}
+        serving = threading.Thread(
+            target=waitress.serve, args=[self.answer], kwargs=options, daemon=True
+        )
+        serving.start()
+
+    def answer(self, environ, start_response):
+        return self.application(environ, start_response)
 
     def status(self, path: str) -> int:
         """The status of an answer; TimeoutError where none comes."""
@@ -47,16 +59,13 @@ class Site:
             return answer
 
 
+@pytest.fixture(scope="session")
+def server() -> Site:
+    return Site()
+
+
 @pytest.fixture
-def site(transactional_db, monkeypatch) -> Site:
+def site(server, transactional_db, monkeypatch) -> Site:
     monkeypatch.setitem(connections.settings["default"], "CONN_MAX_AGE", 0)
-    # Longer than a test waits: what a test expects is never the server's own giving up.
-    monkeypatch.setattr(web_server, "ARRIVAL_SECONDS", 2 * PATIENCE_SECONDS)
-    monkeypatch.setattr(web_server, "IDLE_SECONDS", 2 * PATIENCE_SECONDS)
-    monkeypatch.setattr(web_server, "DISCARD_SECONDS", 2 * PATIENCE_SECONDS)
-    server = WebServer(application, "127.0.0.1", 0)
-    thread = threading.Thread(target=server.run, daemon=True)
-    thread.start()
-    yield Site(server.port)
-    server.stop()
-    thread.join(10)
+    server.application = get_wsgi_application()  # with the shares of threads that the test sets
+    return server

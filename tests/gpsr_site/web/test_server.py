@@ -2,20 +2,34 @@
 
 from __future__ import annotations
 
+import signal
+import socket
+import subprocess
+import sys
 import tempfile
-from urllib.parse import urlencode
+import threading
+import time
 
 import pytest
-from django.test import Client
 
+from annotations.web.rest.streaming import BrokenOff
 from gpsr_site.processes import web_server_commands
-from gpsr_site.web import server
-from gpsr_site.web.body_limits import ANONYMOUS_BYTES, ORDINARY_BYTES, largest_body
-from gpsr_site.web.server import WebServer, require_free_port
-from gpsr_site.wsgi import application
-from tests.waiting import wait_for
+from gpsr_site.web.body_limits import ORDINARY_BYTES
+from gpsr_site.web.server import listen, require_free_port
+from gpsr_site.web.thread_shares import THREADS
+from tests.waiting import PATIENCE_SECONDS, wait_for
 
 GIGABYTE = 1 << 30
+SERVE_WHAT_HANGS = """
+import sys, time
+import django
+django.setup()
+from gpsr_site.web.server import serve
+def hang(environ, start_response):
+    print("at work", flush=True)
+    time.sleep(600)
+serve(hang, "127.0.0.1", int(sys.argv[1]))
+"""
 
 
 def head(path: str, *headers: str) -> bytes:
@@ -23,11 +37,21 @@ def head(path: str, *headers: str) -> bytes:
     return "\r\n".join(lines).encode()
 
 
+def ask(port: int) -> bool:
+    """Send a request whose answer nobody reads; return whether the server listens."""
+    try:
+        connection = socket.create_connection(("127.0.0.1", port))
+    except ConnectionRefusedError:
+        return False
+    connection.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+    return True
+
+
 def test_half_sent_requests_and_slow_bodies_hold_up_nobody(site):
-    half = [site.connect(b"GET / HTTP/1.1\r\nHost: localh") for _ in range(2 * server.THREADS)]
+    half = [site.connect(b"GET / HTTP/1.1\r\nHost: localh") for _ in range(2 * THREADS)]
     slow = [
         site.connect(head("/login/", "Content-Length: 60000") + b"username=")
-        for _ in range(2 * server.THREADS)
+        for _ in range(2 * THREADS)
     ]
     assert site.status("/healthz") == 200
     assert site.status("/login/") == 200
@@ -35,7 +59,33 @@ def test_half_sent_requests_and_slow_bodies_hold_up_nobody(site):
         connection.close()
 
 
-@pytest.mark.parametrize("path", ["/login/", "/admin/login/", "/w/home/import/", "/nowhere"])
+def test_who_does_not_read_holds_no_thread(server):
+    is_made = threading.Event()
+
+    def large(environ, start_response):
+        start_response("200 OK", [("Content-Type", "text/plain")])
+        for _ in range(40):
+            yield b"a" * ORDINARY_BYTES
+        is_made.set()
+
+    server.application = large
+    with server.connect(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"):
+        assert is_made.wait(PATIENCE_SECONDS)
+
+
+def test_an_answer_that_ends_early_is_not_taken_for_whole(server):
+    def broken(environ, start_response):
+        start_response("200 OK", [("Content-Type", "text/plain")])
+        yield b"half"
+        raise BrokenOff("it took too long")
+
+    server.application = broken
+    answer = server.answer_to(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+    assert answer.startswith(b"HTTP/1.1 200 ")
+    assert answer.endswith(b"4\r\nhalf\r\n")  # the last chunk, of no bytes, is missing
+
+
+@pytest.mark.parametrize("path", ["/login/", "/w/home/import/", "/nowhere"])
 def test_an_anonymous_gigabyte_is_refused_at_once_and_leaves_no_file(
     path, site, tmp_path, monkeypatch
 ):
@@ -46,97 +96,46 @@ def test_an_anonymous_gigabyte_is_refused_at_once_and_leaves_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_body_in_chunks_is_refused_as_soon_as_it_is_too_large(site):
-    chunk = b"10000\r\n" + b"a" * 0x10000 + b"\r\n"
-    answer = site.answer_to(head("/login/", "Transfer-Encoding: chunked") + chunk + chunk)
-    assert answer.startswith(b"HTTP/1.1 413 ")
-
-
-def test_a_browser_that_sends_too_much_reads_why(site):
+@pytest.mark.parametrize("path", ["/login/", "/api/v1/worlds/home/import/"])
+def test_a_browser_that_sends_too_much_reads_why(site, path):
     length = 20 * ORDINARY_BYTES
-    answer = site.answer_to(head("/login/", f"Content-Length: {length}") + b"a" * length)
+    whole = head(path, f"Content-Length: {length}", "Connection: close") + b"a" * length
+    answer = site.answer_to(whole)
     assert answer.startswith(b"HTTP/1.1 413 ") and b" 64 kB" in answer
+    assert (b"Content-Type: application/problem+json" in answer) == path.startswith("/api/")
 
 
-def test_a_cookie_does_not_make_a_large_body_welcome(site):
-    cookie, length = "Cookie: sessionid=made-up", ORDINARY_BYTES
-    answer = site.answer_to(
-        head("/login/", cookie, f"Content-Length: {length}", "Connection: close") + b"a" * length
+@pytest.mark.processes
+def test_a_stop_does_not_wait_for_a_request_that_hangs():
+    (listening,) = listen("127.0.0.1", 0)
+    port = listening.getsockname()[1]
+    listening.close()
+    process = subprocess.Popen(
+        [sys.executable, "-c", SERVE_WHAT_HANGS, str(port)], stdout=subprocess.PIPE, text=True
     )
-    assert answer.startswith(b"HTTP/1.1 413 ")
-    assert b" 64 kB" in answer
-
-
-def test_only_the_import_takes_files(settings):
-    large = settings.UPLOAD_MAX_BYTES
-    assert largest_body("/w/home/import/", True) > large
-    assert largest_body("/w/home/import/pairs/", True) > large
-    assert largest_body("/w/home/import/", False) == ANONYMOUS_BYTES
-    assert largest_body("/w/home/templates/new/", True) == ORDINARY_BYTES
-
-
-def test_a_request_that_never_arrives_whole_is_ended(site, monkeypatch):
-    monkeypatch.setattr(server, "ARRIVAL_SECONDS", 1)
-    connection = site.connect(b"GET / HTTP/1.1\r\nX-Slow: ")
-
-    def is_ended():
-        try:
-            connection.sendall(b"y")
-        except OSError:
-            return True
-        return False
-
-    wait_for(is_ended, "the connection is closed")
-
-
-def test_a_request_that_arrives_in_pieces_is_answered(site):
-    connection = site.connect(b"GET /healthz HTTP/1.1\r\nHost: loc")
-    assert site.status("/healthz") == 200  # the server has read the first piece
-    connection.sendall(b"alhost\r\nConnection: close\r\n\r\n")
-    assert connection.recv(1000).startswith(b"HTTP/1.1 200 ")
-
-
-def test_eight_templates_that_explode_do_not_stop_the_site(site, sample, annotator):
-    client = Client()
-    client.force_login(annotator)
-    category = sample.world.grammar.task_categories.get()
-    typed = {"pattern": "(a|b) " * 60 + "$vbfind", "form": "(go $vbfind)"}
-    body = urlencode({**typed, "task_category": category.pk})
-    token = "a" * 32
-    cookies = f"sessionid={client.cookies['sessionid'].value}; csrftoken={token}"
-    asked = [
-        site.connect(
-            head(
-                "/w/home/templates/check/",
-                f"Cookie: {cookies}",
-                f"X-CSRFToken: {token}",
-                "Content-Type: application/x-www-form-urlencoded",
-                f"Content-Length: {len(body)}",
-                "Connection: close",
-            )
-            + body.encode()
-        )
-        for _ in range(server.THREADS)
-    ]
-    assert site.status("/healthz") == 200
-    for connection in asked:
-        assert connection.recv(1000).startswith(b"HTTP/1.1 200 ")
-        connection.close()
-
-
-def test_servers_share_a_port_if_both_do_and_nothing_else_takes_it(transactional_db):
-    servers = [WebServer(application, "127.0.0.1", 0, shares_port=True)]
-    port = servers[0].port
     try:
-        servers.append(WebServer(application, "127.0.0.1", port, shares_port=True))
-        assert servers[1].port == port
+        wait_for(lambda: ask(port), "it listens")
+        assert process.stdout.readline() == "at work\n"
+        began = time.monotonic()
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(PATIENCE_SECONDS) == 0
+        assert time.monotonic() - began < 5
+    finally:
+        process.kill()
+
+
+def test_servers_share_a_port_if_both_do_and_nothing_else_takes_it():
+    servers = listen("127.0.0.1", 0, shares_port=True)
+    port = servers[0].getsockname()[1]
+    try:
+        servers += listen("127.0.0.1", port, shares_port=True)
         with pytest.raises(OSError):
-            WebServer(application, "127.0.0.1", port)
+            listen("127.0.0.1", port)
         with pytest.raises(OSError):
             require_free_port("127.0.0.1", port)
     finally:
         for each in servers:
-            each.stop()
+            each.close()
     require_free_port("127.0.0.1", port)
 
 

@@ -1,4 +1,4 @@
-"""Slow requests leave threads for pages and the last one for ``/healthz``, whatever keeps them."""
+"""Slow requests leave threads for pages and ``/healthz``, whatever keeps them."""
 
 from __future__ import annotations
 
@@ -9,130 +9,85 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 
 import pytest
 from django.db import connection, transaction
-from django.test import Client
+from django.http import HttpResponse, StreamingHttpResponse
+from django.test import Client, RequestFactory
 
 from annotations.models import ApiToken, World
-from annotations.web.rest.streaming import BrokenOff
 from gpsr_site.web import thread_shares
-from gpsr_site.web.server import WebServer
-from gpsr_site.web.thread_shares import (
-    ALL_BUT_HEALTH,
-    FOR_READING,
-    REFUSED,
-    SHARES,
-    SLOW,
-    THREADS,
-    RequestKind,
-    ThreadShare,
-    kind_of,
-)
+from gpsr_site.web.thread_shares import SHARES, THREADS, SlowKind, ThreadShares, kind_of
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.policy import POLICY
-from tests.gpsr_site.web.conftest import Site
 from tests.waiting import PATIENCE_SECONDS, wait_for
 
 PARSE = "/api/v1/worlds/home/parse/"
 UTTERANCES = "/api/v1/worlds/home/utterances/"
 DOWNLOAD = "/w/home/download/"
-SECOND = 1.0
 
 
-class Holding:
-    """An application whose requests, all but those to ``/healthz``, wait until they are let go."""
-
-    def __init__(self) -> None:
-        self.at_work: list[str] = []
-        self.refused: list[str] = []
-        self.let_go = threading.Event()
-
-    def __call__(self, environ, start_response):
-        what = f"{environ['REQUEST_METHOD']} {environ['PATH_INFO']}"
-        if REFUSED in environ:
-            self.refused.append(what)
-        elif environ["PATH_INFO"] != "/healthz":
-            self.at_work.append(what)
-            self.let_go.wait(PATIENCE_SECONDS)
-        start_response("200 OK", [("Content-Length", "2")])
-        return [b"ok"]
+def request_of(kind: SlowKind):
+    if kind is SlowKind.LONG:
+        return RequestFactory().get(DOWNLOAD)
+    path, sent = {
+        SlowKind.WRITE: (UTTERANCES, "application/json"),
+        SlowKind.BATCH: (PARSE, "application/jsonl; charset=utf-8"),
+    }[kind]
+    return RequestFactory().post(path, "{}", sent)
 
 
-@contextmanager
-def serving(application) -> Iterator[Site]:
-    server = WebServer(application, "127.0.0.1", 0)
-    thread = threading.Thread(target=server.run, daemon=True)
-    thread.start()
-    try:
-        yield Site(server.port)
-    finally:
-        server.stop()
-        thread.join(10)
+def set_share(monkeypatch, kind: SlowKind, **changes) -> None:
+    monkeypatch.setitem(thread_shares.SHARES, kind, replace(SHARES[kind], **changes))
 
 
-@pytest.fixture
-def holding():
-    application = Holding()
-    with serving(application) as site:
-        application.site = site
-        yield application
-        application.let_go.set()
+def test_all_slow_requests_together_leave_threads_for_others():
+    assert sum(share.threads for share in SHARES.values()) <= THREADS - 3
 
 
-def send(holding: Holding, count: int, method: str, path: str, kind: str = "") -> None:
-    lines = [f"{method} {path} HTTP/1.1", "Host: localhost", "Content-Length: 0"]
-    lines += [f"Content-Type: {kind}"] if kind else []
-    for _ in range(count):
-        holding.site.connect("\r\n".join([*lines, "", ""]).encode())
+@pytest.mark.parametrize("kind", SlowKind)
+def test_who_finds_no_thread_is_told_when_to_come_back(kind, monkeypatch):
+    set_share(monkeypatch, kind, threads=2, at_work=2)
+    answers = []
+
+    def view(request):  # each request asks for another one, until one is refused
+        answers.append(shares(request_of(kind)))
+        return HttpResponse("ok")
+
+    shares = ThreadShares(view)
+    assert shares(request_of(kind)).status_code == 200
+    assert [answer.status_code for answer in answers] == [503, 200]
+    assert answers[0]["Retry-After"] == str(SHARES[kind].retry_after)
+    if kind is not SlowKind.LONG:
+        assert answers[0]["Content-Type"] == "application/problem+json"
 
 
-def test_writers_leave_threads_for_pages_and_pages_leave_one_for_the_health(holding):
-    send(holding, 20, "POST", UTTERANCES)
-    wait_for(lambda: len(holding.at_work) == SLOW, "writers have their share")
-    send(holding, 20, "GET", "/w/home/")
-    wait_for(lambda: len(holding.at_work) == ALL_BUT_HEALTH, "pages have theirs")
-    time.sleep(0.2)
-    assert holding.at_work.count("GET /w/home/") == FOR_READING
-    assert holding.site.status("/healthz") == 200
-    holding.let_go.set()
-    wait_for(lambda: len(holding.at_work) == 40, "all have their turn")
-    assert holding.refused == []
+def test_a_writer_waits_for_its_turn_and_not_for_ever(monkeypatch):
+    set_share(monkeypatch, SlowKind.WRITE, at_work=1, patience=0.1)
+    answers = []
 
+    def view(request):
+        answers.append(shares(request_of(SlowKind.WRITE)).status_code)
+        assert shares(request_of(SlowKind.BATCH)).status_code == 200
+        return HttpResponse("ok")
 
-@pytest.mark.parametrize("kind", [RequestKind.LONG, RequestKind.BATCH])
-def test_batches_and_downloads_have_a_small_share(holding, kind):
-    if kind is RequestKind.LONG:
-        send(holding, THREADS, "GET", DOWNLOAD)
-    else:
-        send(holding, THREADS, "POST", PARSE, "application/jsonl")
-    wait_for(lambda: len(holding.at_work) == SHARES[kind].threads, "some are at work")
-    send(holding, 1, "POST", UTTERANCES)
-    wait_for(lambda: f"POST {UTTERANCES}" in holding.at_work, "others go on")
-    assert len(holding.at_work) == SHARES[kind].threads + 1
-
-
-def test_a_batch_that_finds_no_thread_is_refused_at_once(holding):
-    send(holding, 10, "POST", PARSE, "application/jsonl; charset=utf-8")
-    wait_for(
-        lambda: len(holding.refused) == 10 - SHARES[RequestKind.BATCH].threads,
-        "the rest is refused",
+    shares = ThreadShares(
+        lambda request: HttpResponse("ok") if "parse" in request.path else view(request)
     )
+    assert shares(request_of(SlowKind.WRITE)).status_code == 200
+    assert answers == [503]
 
 
-def test_one_utterance_waits_for_no_writer(holding):
-    send(holding, 20, "POST", UTTERANCES)
-    wait_for(lambda: len(holding.at_work) == SLOW, "writers have their share")
-    send(holding, 1, "POST", PARSE, "application/json")
-    wait_for(lambda: f"POST {PARSE}" in holding.at_work, "the robot has an answer")
-
-
-def test_who_has_waited_too_long_is_refused_while_others_still_work(holding, monkeypatch):
-    monkeypatch.setitem(thread_shares.SHARES, RequestKind.WRITE, ThreadShare(SLOW, patience=0.2))
-    send(holding, SLOW + 3, "POST", UTTERANCES)
-    wait_for(lambda: len(holding.refused) == 3, "those who find no thread are refused")
-    assert len(holding.at_work) == SLOW
+def test_an_answer_in_pieces_has_its_thread_until_it_is_closed(monkeypatch):
+    set_share(monkeypatch, SlowKind.LONG, threads=1, at_work=1)
+    shares = ThreadShares(lambda request: StreamingHttpResponse(iter([b"1", b"2"])))
+    first = shares(request_of(SlowKind.LONG))
+    assert next(iter(first)) == b"1"
+    assert shares(request_of(SlowKind.LONG)).status_code == 503
+    first.close()
+    assert shares(request_of(SlowKind.LONG)).status_code == 200
 
 
 @pytest.mark.parametrize("rule", [rule for rule in POLICY if rule.method == "post"], ids=str)
@@ -140,34 +95,20 @@ def test_what_writes_is_a_writer(rule, sample):
     if rule.name == "admin:index":
         return
     kind = kind_of("POST", address(rule.name, sample).partition("?")[0])
-    assert kind in (RequestKind.WRITE, RequestKind.READ)
+    assert kind in (SlowKind.WRITE, None)
     if not rule.name.startswith("api:"):
-        only_reads = rule.name == "campaign_check"
-        assert kind is (RequestKind.READ if only_reads else RequestKind.WRITE)
+        assert kind is (None if rule.name == "campaign_check" else SlowKind.WRITE)
 
 
 def test_the_address_says_what_a_request_asks_of_its_thread():
-    assert kind_of("GET", "/healthz") is RequestKind.HEALTH
-    assert kind_of("GET", "/w/home/") is kind_of("HEAD", "/nowhere") is RequestKind.READ
-    assert kind_of("GET", DOWNLOAD) is RequestKind.LONG
-    assert kind_of("POST", "/login/") is kind_of("DELETE", "/nowhere") is RequestKind.WRITE
-    assert kind_of("POST", PARSE, "application/json") is RequestKind.READ
+    for path in ("/healthz", "/w/home/", "/nowhere"):
+        assert kind_of("GET", path) is kind_of("HEAD", path) is None
+    assert kind_of("GET", DOWNLOAD) is SlowKind.LONG
+    assert kind_of("POST", "/login/") is kind_of("DELETE", "/nowhere") is SlowKind.WRITE
+    assert kind_of("POST", PARSE, "application/json") is None
     for spelling in ("application/jsonl", "Application/JSONL", "*/jsonl; charset=utf-8"):
-        assert kind_of("POST", PARSE, spelling) is RequestKind.BATCH
-    assert kind_of("POST", UTTERANCES, "application/jsonl") is RequestKind.WRITE
-
-
-def test_an_answer_that_ends_early_is_not_taken_for_whole():
-    def broken(environ, start_response):
-        start_response("200 OK", [("Content-Type", "text/plain")])
-        yield b"half"
-        raise BrokenOff("it took too long") if environ["PATH_INFO"] == "/late" else OSError("gone")
-
-    with serving(broken) as site:
-        for path in ("/late", "/gone"):
-            answer = site.answer_to(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
-            assert answer.startswith(b"HTTP/1.1 200 ")
-            assert answer.endswith(b"4\r\nhalf\r\n")  # the last chunk, of no bytes, is missing
+        assert kind_of("POST", PARSE, spelling) is SlowKind.BATCH
+    assert kind_of("POST", UTTERANCES, "application/jsonl") is SlowKind.WRITE
 
 
 @contextmanager
@@ -192,8 +133,13 @@ def locked(world: World) -> Iterator[None]:
         thread.join()
 
 
-def test_pages_go_on_while_writers_wait(site, sample, annotator, monkeypatch):
-    monkeypatch.setitem(thread_shares.SHARES, RequestKind.WRITE, ThreadShare(SLOW, patience=1))
+@pytest.fixture
+def few_writers(monkeypatch):
+    """Before ``site``, which reads it."""
+    set_share(monkeypatch, SlowKind.WRITE, at_work=2, patience=1)
+
+
+def test_pages_go_on_while_writers_wait(few_writers, site, sample, annotator):
     key = ApiToken.issue(annotator, "robot", scope="annotate")[1]
     browser = Client()
     browser.force_login(annotator)
@@ -210,7 +156,7 @@ def test_pages_go_on_while_writers_wait(site, sample, annotator, monkeypatch):
             began = time.monotonic()
             assert page(path).startswith(b"HTTP/1.1 200 ")
             assert time.monotonic() - began < PATIENCE_SECONDS / 2
-        expected = len(saving) - SLOW
+        expected = len(saving) - 2
         wait_for(lambda: len(answered(saving)) == expected, "those beyond the share are refused")
         refused = answered(saving)
         answers = [b"".join(iter(partial(each.recv, 10_000), b"")) for each in refused]

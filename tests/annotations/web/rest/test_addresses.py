@@ -8,7 +8,7 @@ import pytest
 
 from annotations.models import ApiToken
 from annotations.web.rest.streaming import JSON_LINES_TYPES
-from gpsr_site.web.thread_shares import RequestKind, kind_of
+from gpsr_site.web.thread_shares import SlowKind, kind_of
 
 PARSE = "/api/v1/worlds/home/parse/"
 
@@ -35,8 +35,8 @@ def test_a_post_without_the_last_slash_does_its_work(sample, client, headers):
 
 def test_a_request_without_the_last_slash_has_the_same_share(sample):
     for kind in JSON_LINES_TYPES:
-        assert kind_of("POST", PARSE, kind) is RequestKind.BATCH
-        assert kind_of("POST", PARSE.rstrip("/"), kind) is RequestKind.BATCH
+        assert kind_of("POST", PARSE, kind) is SlowKind.BATCH
+        assert kind_of("POST", PARSE.rstrip("/"), kind) is SlowKind.BATCH
 
 
 def test_the_root_lists_what_is_there(sample, client):

@@ -74,7 +74,7 @@ def test_more_lines_than_a_request_may_bring_are_refused_whole(send):
 def test_a_batch_that_takes_too_long_says_how_far_it_came(send, monkeypatch):
     answer = send(BOWL * 3)
     assert len(answers_of(answer)) == 3
-    monkeypatch.setattr(parsing_rest, "SHARE_OF_TIME", 0)
+    monkeypatch.setattr(parsing_rest, "MOST_SECONDS", 0)
     pieces, answered = iter(send(BOWL * 200).streaming_content), []
     with pytest.raises(BrokenOff):
         for piece in pieces:
