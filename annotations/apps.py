@@ -23,5 +23,7 @@ class AnnotationsConfig(AppConfig):
         register_verb(JobKind.LOAD_WORLD, "annotations.exchange.shipped_worlds.load_world_of")
         register_verb(JobKind.IMPORT_RESULTS, "annotations.campaigns.crowd_jobs.import_results_of")
         register_verb(JobKind.GENERATE, "annotations.generation.generating.generate_pairs_of")
+        register_verb(JobKind.LAUNCH, "annotations.campaigns.launching_job.launch_of")
+        register_verb(JobKind.FREEZE, "annotations.generation.freezing_job.freeze_of")
         register_verb(JobKind.DELETE_WORLD, "annotations.exchange.world_deletion.delete_world_of")
         register_sweep("annotations.exchange.hidden_worlds.sweep_hidden_worlds")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from http import HTTPStatus
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from django.db import transaction
 from django.utils import timezone
@@ -15,6 +15,8 @@ from annotations.background.job_files import folder_of, forget_files, keep_uploa
 from annotations.language.texts import Refusal, say_count
 from annotations.models import Job, JobKind, User, World
 from annotations.models.background import JobQuerySet, Queue, Status
+
+Outcome = TypeVar("Outcome")
 
 
 def request_job(
@@ -53,6 +55,22 @@ def request_job_once(
         if (job := waiting.all().first()) is not None:
             return job, False
         return request_job(kind, world.name, by, arguments, queue=queue), True
+
+
+def start_work(
+    is_heavy: bool,
+    kind: str,
+    world: World,
+    by: User | None,
+    arguments: Mapping[str, Any],
+    do: Callable[[], Outcome],
+) -> Job | Outcome:
+    """Do the work and return what comes of it. Where it is too heavy for a request, return a job of ``kind`` instead:
+    the one that is about to do the same already, or a new one."""
+    if not is_heavy:
+        return do()
+    active = world.jobs.active().filter(kind=kind, arguments=arguments)
+    return request_job_once(active, kind, world, by, arguments)[0]
 
 
 def keep_question(

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
 from typing import Any
 
 from annotations.background.job_files import kept_uploads
 from annotations.background.requesting import request_job
 from annotations.background.watching import JobProgress
 from annotations.campaigns.crowd_results import new_campaign, plan_results, store_results
+from annotations.campaigns.launching import name_taken
 from annotations.exchange.source_files import UploadedFile, read_one_file
 from annotations.labelling.upload_reading import decode_upload
 from annotations.language.corpus import CrowdTable, read_crowd_results
-from annotations.language.texts import LanguageError, Refusal
+from annotations.language.texts import LanguageError
 from annotations.models import Campaign, Job, JobKind, User, World
 from annotations.models.corpus import MOST_CHARACTERS
 
@@ -39,8 +39,7 @@ def start_results_import(
         Refusal: the world has a campaign called ``name``.
     """
     if campaign is None and world.campaigns.filter(name=name).exists():
-        said = f"This world has a campaign called {name} already. Choose another name."
-        raise Refusal(said, "name_taken", HTTPStatus.CONFLICT)
+        raise name_taken(name)
     arguments = {
         "campaign": campaign.pk if campaign else None,
         "name": "" if campaign else name,

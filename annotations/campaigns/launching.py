@@ -9,9 +9,10 @@ from http import HTTPStatus
 from random import Random
 from typing import Any
 
-from django.db import IntegrityError, transaction
+from django.db import IntegrityError
 from django.db.models import Count
 
+from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.grounded_pairs import GroundedCommands, commands_to_ground
 from annotations.language.corpus import Named, entities_of
 from annotations.language.forms import canonical_text
@@ -108,13 +109,17 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
     return drawn
 
 
-def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
+def launch(
+    campaign: Campaign, choice: PromptChoice, by: User | None, progress: Progress = UNWATCHED
+) -> Campaign:
     """Store an unsaved campaign with its prompts, and with its planted checks. It is open at once.
 
     Raises:
         LanguageError, Refusal: as ``draw_prompts``; the world has a campaign of that name.
     """
+    progress.report(0, "drawing prompts")
     drawn = draw_prompts(campaign.world, choice)
+    progress.report(0.8, "writing them")
     commands = dict(campaign.world.commands.values_list("anonymized_text", "pk"))
     campaign.wording, campaign.balance, campaign.seed = choice.wording, choice.balance, choice.seed
     campaign.target_per_form, campaign.created_by = choice.target_per_form, by
@@ -136,13 +141,24 @@ def launch(campaign: Campaign, choice: PromptChoice, by: User) -> Campaign:
     for position, prompt in enumerate(prompts, start=1):
         prompt.campaign, prompt.position = campaign, position
     try:
-        with transaction.atomic():
+        with progress.writing():
             campaign.save()
             CampaignPrompt.objects.bulk_create(prompts, batch_size=BATCH)
+            progress.conclude(report_of(campaign))
     except IntegrityError as error:
-        said = f"This world has a campaign called {campaign.name} already. Choose another name."
-        raise Refusal(said, "name_taken", HTTPStatus.CONFLICT) from error
+        raise name_taken(campaign.name) from error
     return campaign
+
+
+def name_taken(name: str) -> Refusal:
+    said = f"This world has a campaign called {name} already. Choose another name."
+    return Refusal(said, "name_taken", HTTPStatus.CONFLICT)
+
+
+def report_of(campaign: Campaign) -> dict[str, Any]:
+    """Return what the job that launched a campaign reports."""
+    counts = {"prompts": campaign.prompts.count()}
+    return {"campaign": campaign.pk, "name": campaign.name, **counts}
 
 
 def row_of(named: Named) -> dict[str, Any]:

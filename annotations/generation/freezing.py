@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Self
 
 from django.core.exceptions import ValidationError
-from django.db import transaction
 
+from annotations.background.progress import UNWATCHED, Progress
 from annotations.language.corpus import (
     DEFAULT_PROPORTIONS,
     Criterion,
@@ -33,6 +33,7 @@ def freeze_split(
     by: User | None = None,
     must_be_new: bool = False,
     tests_on_models: bool = False,
+    progress: Progress = UNWATCHED,
 ) -> Split:
     """Freeze the commands, accepted paraphrases and labelled utterances of ``world`` as the split ``name``.
 
@@ -51,18 +52,32 @@ def freeze_split(
         LanguageError: there is nothing to split, the proportions are no shares of a whole, or the name is taken by
             a split with other examples.
     """
+    if must_be_new:
+        require_free(world, name)
+    progress.report(0, "parting the pairs")
     examples = plan_split(world, criterion, seed, proportions, tests_on_models)
-    with (
-        PreparedSplit(
-            name, criterion, examples, seed, proportions, tests_on_models=tests_on_models
-        ) as prepared,
-        transaction.atomic(),
-    ):
+    progress.report(0.6, "writing the split")
+    prepared = PreparedSplit(
+        name, criterion, examples, seed, proportions, tests_on_models=tests_on_models
+    )
+    with prepared, progress.writing():
         World.objects.hold().get(pk=world.pk)
-        frozen, is_new = prepared.store(world, by)
-    if must_be_new and not is_new:
-        raise LanguageError(f"there is a split {name} already", hint="choose another name")
+        if must_be_new:
+            require_free(world, name)  # nobody has taken it meanwhile
+        frozen, _ = prepared.store(world, by)
+        progress.conclude(report_of(frozen))
     return frozen
+
+
+def require_free(world: World, name: str) -> None:
+    """Raise LanguageError where ``world`` has a split called ``name``."""
+    if world.splits.filter(name=name).exists():
+        raise LanguageError(f"there is a split {name} already", hint="choose another name")
+
+
+def report_of(frozen: Split) -> dict[str, Any]:
+    """Return what the job that froze a split reports."""
+    return {"split": frozen.pk, "name": frozen.name, "examples": frozen.examples.count()}
 
 
 def plan_split(

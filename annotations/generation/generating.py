@@ -7,7 +7,7 @@ from typing import Any
 
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
-from annotations.background.requesting import request_job_once
+from annotations.background.requesting import start_work
 from annotations.background.watching import JobProgress
 from annotations.generation.complexity import Complexity, complexity
 from annotations.generation.generated_world import GeneratedWorld, counters_of
@@ -92,11 +92,8 @@ def start_generation(
 
     Raises LanguageError where the templates cannot be expanded.
     """
-    if is_large(world):
-        kind, arguments = models.JobKind.GENERATE, _arguments(request)
-        active = world.jobs.active().filter(kind=kind, arguments=arguments)
-        return request_job_once(active, kind, world, by, arguments)[0]
-    return generate_pairs(world, request=request)
+    asked = is_large(world), models.JobKind.GENERATE, world, by, _arguments(request)
+    return start_work(*asked, lambda: generate_pairs(world, request=request))
 
 
 def _arguments(request: SampleRequest | None) -> dict[str, Any]:

@@ -11,14 +11,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 
-from django.db import transaction
-
+from annotations.background.progress import UNWATCHED, Progress
 from annotations.generation.freezing import (
     PreparedSplit,
     as_items,
     assign_parts,
     candidates,
     kept_in_training,
+    report_of,
 )
 from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion, Part, SplitItem, split
 from annotations.language.texts import LanguageError
@@ -72,15 +72,18 @@ class SplitChanges:
         )
 
 
-def freeze_anew(old: Split, by: User | None = None) -> Split:
+def freeze_anew(old: Split, by: User | None = None, progress: Progress = UNWATCHED) -> Split:
     """Freeze the corpus of today with the criterion, shares and seed of ``old``, which stays as it is.
 
     Raises LanguageError where nothing has changed since, or ``old`` was frozen anew already.
     """
-    _require_last(old)
+    require_last(old)
+    progress.report(0, "parting the pairs")
     examples = plan_anew(old)
+    progress.report(0.4, "comparing them with those of the split")
     if changes_between(old, examples).is_none:
         raise LanguageError(f"nothing has changed since {old} was frozen")
+    progress.report(0.6, "writing the split")
     prepared = PreparedSplit(
         name_after(old),
         old.criterion,
@@ -90,13 +93,16 @@ def freeze_anew(old: Split, by: User | None = None) -> Split:
         old,
         old.tests_on_models,
     )
-    with prepared, transaction.atomic():
+    with prepared, progress.writing():
         World.objects.hold().get(pk=old.world_id)
-        _require_last(old)  # nobody has done the same meanwhile
-        return prepared.store(old.world, by)[0]
+        require_last(old)  # nobody has done the same meanwhile
+        frozen, _ = prepared.store(old.world, by)
+        progress.conclude(report_of(frozen))
+    return frozen
 
 
-def _require_last(old: Split) -> None:
+def require_last(old: Split) -> None:
+    """Raise LanguageError where ``old`` was frozen anew already."""
     later = last_of(old)
     if later != old:
         raise LanguageError(f"{old} was frozen anew as {later}", hint="freeze that one anew")

@@ -153,6 +153,8 @@ class JobKind(models.TextChoices):
     IMPORT_WORLD = "import_world", "Import of a world"
     LOAD_WORLD = "load_world", "Loading of a world"
     GENERATE = "generate", "Generation of commands"
+    FREEZE = "freeze", "Freezing of a split"
+    LAUNCH = "launch", "Launch of a campaign"
     PROPOSE = "propose", "Forms proposed by a parser"
     AUDIT = "audit", "Label audit"
     ANALYSE = "analyse", "Error analysis of a run"
@@ -167,6 +169,7 @@ class JobKind(models.TextChoices):
 # What somebody must be allowed to do to ask for a job, or to stop it; everything else is for admins.
 DUTIES = {
     JobKind.GENERATE: Duty.ANNOTATE,
+    JobKind.FREEZE: Duty.ANNOTATE,
     JobKind.PROPOSE: Duty.ANNOTATE,
     JobKind.AUDIT: Duty.REVIEW,
     JobKind.ANALYSE: Duty.REVIEW,

@@ -241,10 +241,11 @@ class CampaignForm(forms.Form):
         chosen = {name: self.cleaned_data[name] for name in self.OF_CHOICE}
         return PromptChoice(**{**chosen, "task_categories": tuple(chosen["task_categories"])})
 
-    def unsaved(self, world: World) -> Campaign:
-        """Return the campaign that a valid form describes."""
-        columns = self.cleaned_data.keys() - {"task_categories", "prompts_per_form"}
-        return Campaign(world=world, **{name: self.cleaned_data[name] for name in columns})
+    @property
+    def values(self) -> dict[str, Any]:
+        """Return the columns of the campaign that a valid form describes."""
+        others = ("task_categories", "prompts_per_form")
+        return {name: value for name, value in self.cleaned_data.items() if name not in others}
 
     def group(self, names: tuple[str, ...]) -> list[forms.BoundField]:
         return [self[name] for name in names]

@@ -15,10 +15,10 @@ from annotations.campaigns.campaign_files import MOST_TASKS
 from annotations.campaigns.changing import CampaignChanged, change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.crowd_jobs import start_results_import
-from annotations.campaigns.launching import DrawnPrompt, draw_prompts, launch
+from annotations.campaigns.launching_job import MOST_SHOWN, start_launch, start_preview
 from annotations.campaigns.progress import progress_of
 from annotations.language.texts import LanguageError, Refusal, say_count
-from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, World
+from annotations.models import Campaign, CampaignPrompt, Contributor, Duty, Job, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
@@ -35,7 +35,6 @@ from annotations.web.campaigns.campaign_forms import (
 from annotations.web.campaigns.campaign_links import link_of
 from annotations.web.forms import posted, sentence_of
 
-MOST_SHOWN = 8  # prompts of a preview, and of a campaign's page
 SORTS = {"newest": Sort("Launched", "-created_at"), "name": Sort("Campaign", "name")}
 CONTRIBUTOR_SORTS = {"began": Sort("Began", "-began_at")}
 # What a button does, and what is said afterwards.
@@ -69,12 +68,18 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         try:
+            started: Job | Campaign | dict[str, Any]
             if "launch" in request.POST:
-                row = launch(form.unsaved(world), form.choice, request.user)
-                note(request, row.name)
+                started = start_launch(world, form.values, form.choice, request.user)
+                note(request, form.cleaned_data["name"])
+            else:
+                started = start_preview(world, form.choice, request.user)
+            if isinstance(started, Job):
+                return redirect("job", pk=started.pk)
+            if isinstance(started, Campaign):
                 messages.success(request, "Launched. Send the link to whoever shall contribute.")
-                return redirect("campaign_page", world=world.name, pk=row.pk)
-            context |= preview_of(draw_prompts(world, form.choice))
+                return redirect("campaign_page", world=world.name, pk=started.pk)
+            context["report"] = started
         except LanguageError as error:
             form.add_error(None, sentence_of(error))
         except Refusal as refusal:
@@ -103,12 +108,6 @@ def campaign_results(request: WorldRequest, world: World) -> HttpResponse:
     status = 422 if form.errors else 200
     context = {"form": form}
     return render(request, "annotations/campaigns/campaign_results.html", context, status=status)
-
-
-def preview_of(drawn: list[DrawnPrompt]) -> dict[str, Any]:
-    forms = {each.expansion.form_text for each in drawn}
-    step = -(-len(drawn) // MOST_SHOWN)  # from all over: those of one form stand together
-    return {"prompts": drawn[::step], "count": len(drawn), "forms": len(forms)}
 
 
 @never_cache

@@ -18,11 +18,11 @@ from annotations.campaigns.campaign_files import MOST_TASKS, accepted_triples, t
 from annotations.campaigns.changing import change_campaign
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.crowd_jobs import start_results_import
-from annotations.campaigns.launching import launch
+from annotations.campaigns.launching_job import start_launch
 from annotations.campaigns.progress import progress_of
 from annotations.exchange.split_export import SplitFormat
 from annotations.language.texts import ENCODINGS
-from annotations.models import Campaign, Contributor, Duty, Scope
+from annotations.models import Campaign, Contributor, Duty, Job, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
     MOST_CHARACTERS_OF_TEXT,
@@ -61,7 +61,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsViewSet
 from annotations.web.rest.streaming import attachment
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted, address_of_job
 
 READ_BY_ADMINS = dict.fromkeys(("list", "retrieve"), Duty.MANAGE)
 READ_SCOPES = dict.fromkeys(("list", "retrieve"), Scope.READ)
@@ -243,18 +243,20 @@ class CampaignViewSet(RowsViewSet):
     def rows(self) -> QuerySet[Campaign]:
         return self.world.campaigns.counted().select_related("created_by", "world")
 
-    @extend_schema(request=NewCampaign, responses={201: CampaignSerializer})
+    @extend_schema(request=NewCampaign, responses={201: CampaignSerializer, 202: JobSerializer})
     @may_take_long
     @once
     def create(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Launches a campaign: draws its prompts. It is open at once."""
+        """Launches a campaign: draws its prompts, by a job (202) where that takes long. Then it is open."""
         form = CampaignForm(self.world, self.read(NewCampaign))
         if not form.is_valid():
             raise refusal_of_form(form)
-        row = launch(form.unsaved(self.world), form.choice, request.user)
-        note(request, row.name)
-        response = self.show(self.rows().get(pk=row.pk), HTTPStatus.CREATED)
-        response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
+        started = start_launch(self.world, form.values, form.choice, request.user)
+        note(request, form.cleaned_data["name"])
+        if isinstance(started, Job):
+            return accepted(request, started)
+        response = self.show(self.rows().get(pk=started.pk), HTTPStatus.CREATED)
+        response["Location"] = request.build_absolute_uri(f"{request.path}{started.pk}/")
         return response
 
     @extend_schema(request=CampaignChange, responses={200: CampaignSerializer})

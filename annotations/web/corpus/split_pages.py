@@ -8,18 +8,12 @@ from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
-from annotations.generation.freezing import as_items, freeze_split, plan_split, unresolved_prompts
-from annotations.generation.renewing import changes_since, freeze_anew, is_from_import, last_of
-from annotations.generation.split_statistics import (
-    counts_of,
-    counts_of_planned,
-    leakage_of,
-    near_duplicates_of,
-)
+from annotations.generation.freezing_job import start_freezing, start_preview, start_renewal
+from annotations.generation.renewing import changes_since, is_from_import, last_of
+from annotations.generation.split_statistics import counts_of, leakage_of, near_duplicates_of
 from annotations.labelling.label_changes import examples_before
-from annotations.language.corpus import Criterion
 from annotations.language.texts import LanguageError
-from annotations.models import Duty, Example, Split, World
+from annotations.models import Duty, Example, Job, Split, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
 from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
@@ -61,17 +55,18 @@ def split_new(request: WorldRequest, world: World) -> HttpResponse:
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         try:
-            if "freeze" not in request.POST:
-                planned = plan_split(world, **form.choice)
-                context["counts"] = counts_of_planned(planned)
-                if form.choice["criterion"] == Criterion.SOURCE_COMMAND:
-                    context["unresolved"] = sorted(unresolved_prompts(as_items(planned)).values())
-            else:
+            started: Job | Split | dict[str, Any]
+            if "freeze" in request.POST:
                 name = form.cleaned_data["name"]
-                frozen = freeze_split(world, name, by=request.user, **form.choice)
-                return redirect("split", world=world.name, pk=frozen.pk)
+                started = start_freezing(world, request.user, name, **form.choice)
+            else:
+                started = start_preview(world, request.user, **form.choice)
         except LanguageError as error:
             form.add_error(None, str(error))
+        else:
+            if not isinstance(started, dict):
+                return _shown(world, started)
+            context["report"] = started
     return render(request, "annotations/corpus/split_new.html", context)
 
 
@@ -118,12 +113,20 @@ def split_renew(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Freeze a split anew from the corpus of today, and show the new one."""
     row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)
     try:
-        renewed = freeze_anew(row, request.user)
+        started = start_renewal(row, request.user)
     except LanguageError as error:
         messages.error(request, str(error))
         return redirect("split", world=world.name, pk=pk)
-    messages.success(request, f"Frozen anew as {renewed}. {row} stays as it was.")
-    return redirect("split", world=world.name, pk=renewed.pk)
+    if isinstance(started, Split):
+        messages.success(request, f"Frozen anew as {started}. {row} stays as it was.")
+    return _shown(world, started)
+
+
+def _shown(world: World, started: Job | Split) -> HttpResponse:
+    """Lead to a split that was just frozen, or to the job that freezes it."""
+    if isinstance(started, Job):
+        return redirect("job", pk=started.pk)
+    return redirect("split", world=world.name, pk=started.pk)
 
 
 @world_view(Duty.VIEW)

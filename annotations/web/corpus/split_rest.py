@@ -14,11 +14,11 @@ from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
-from annotations.generation.freezing import freeze_split
-from annotations.generation.renewing import changes_since, freeze_anew
+from annotations.generation.freezing_job import start_freezing, start_renewal
+from annotations.generation.renewing import changes_since
 from annotations.generation.split_statistics import counts_of, near_duplicates_of
 from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion
-from annotations.models import Duty, Example, Split
+from annotations.models import Duty, Example, Job, Split
 from annotations.models.splits import criterion_choices
 from annotations.people.allowances import may_take_long
 from annotations.web.corpus.split_filters import (
@@ -34,6 +34,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Figures, RowsRoute, RowsViewSet
 from annotations.web.rest.samples import SampleNoteSerializer
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 
 
 class PartCountSerializer(serializers.Serializer[Any]):
@@ -107,33 +108,34 @@ class SplitViewSet(RowsViewSet):
             context["counts"] = counts_of(rows if options.get("many") else [rows])
         return serializer
 
-    @extend_schema(request=NewSplit)
+    @extend_schema(request=NewSplit, responses={201: SplitSerializer, 202: JobSerializer})
     @may_take_long
     @once
     def create(self, request: ApiRequest, **kwargs: object) -> Response:
-        """Freezes a split from the corpus of today."""
+        """Freezes a split from the corpus of today; where that takes long, the answer is a job (202)."""
         sent = self.read(NewSplit)
         shares = dict(zip(SplitForm.SHARES, sent.pop("proportions"), strict=True))
         form = SplitForm({**sent, **{part: 100 * share for part, share in shares.items()}})
         if not form.is_valid():
             raise refusal_of_form(form)
-        chosen = {**form.choice, "must_be_new": True}
-        frozen = freeze_split(self.world, sent["name"], by=request.user, **chosen)
-        return self._frozen(frozen)
+        chosen = {"name": sent["name"], "must_be_new": True, **form.choice}
+        return self._started(start_freezing(self.world, request.user, **chosen))
 
-    @extend_schema(request=None, responses={201: SplitSerializer})
+    @extend_schema(request=None, responses={201: SplitSerializer, 202: JobSerializer})
     @may_take_long
     @action(detail=True, methods=["post"])
     @once
     def renew(self, request: ApiRequest, **kwargs: object) -> Response:
         """Freezes a split anew from the corpus of today; the old one stays as it was."""
-        return self._frozen(freeze_anew(self.get_object(), request.user))
+        return self._started(start_renewal(self.get_object(), request.user))
 
-    def _frozen(self, split: Split) -> Response:
-        """Answer with a split that was just frozen, and where it is."""
-        path = f"/api/v1/worlds/{self.world.name}/splits/{split.pk}/"
+    def _started(self, started: Job | Split) -> Response:
+        """Answer with a split that was just frozen, or the job that freezes it, and where it is."""
+        if isinstance(started, Job):
+            return accepted(self.request, started)
+        path = f"/api/v1/worlds/{self.world.name}/splits/{started.pk}/"
         location = {"Location": self.request.build_absolute_uri(path)}
-        shown = self.get_serializer(split).data
+        shown = self.get_serializer(started).data
         return Response(shown, status=HTTPStatus.CREATED, headers=location)
 
 

@@ -56,6 +56,12 @@ def address_of_job(request: ApiRequest, job: Job) -> str:
     return request.build_absolute_uri(f"/api/v1/{below}/{job.pk}/")
 
 
+def accepted(request: ApiRequest, job: Job) -> Response:
+    """Answer with a job that was asked for, and where it is."""
+    location = {"Location": address_of_job(request, job)}
+    return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+
+
 class JobQuery(django_filters.FilterSet):
     class Meta:
         model = Job

@@ -30,6 +30,8 @@ TEMPLATES = {
     JobKind.LOAD_WORLD: "annotations/worlds/_loading_result.html",
     JobKind.IMPORT_RESULTS: "annotations/worlds/_results_result.html",
     JobKind.GENERATE: "annotations/worlds/_generation_result.html",
+    JobKind.LAUNCH: "annotations/worlds/_launch_result.html",
+    JobKind.FREEZE: "annotations/worlds/_freezing_result.html",
     JobKind.PROPOSE: "annotations/worlds/_proposals_result.html",
     JobKind.AUDIT: "annotations/worlds/_audit_result.html",
     JobKind.ANALYSE: "annotations/worlds/_analysis_result.html",

@@ -20,7 +20,7 @@ from annotations.web.rest.permissions import ApiRequest, ChangedBySiteAdmins, Fo
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import ManyRows, RowRoute, Tagged
 from annotations.web.rest.samples import SampleNoteSerializer
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from annotations.web.worlds.world_forms import NewWorldForm, WorldForm
 
 
@@ -96,8 +96,7 @@ class Worlds(WorldShowing, ManyRows):
         if created is None:
             raise refusal_of_form(form)
         if (job := form.load(created, request.user)) is not None:
-            location = {"Location": address_of_job(request, job)}
-            return Response(JobSerializer(job).data, HTTPStatus.ACCEPTED, headers=location)
+            return accepted(request, job)
         response = self.show(created, HTTPStatus.CREATED)
         response["Location"] = request.build_absolute_uri(f"{request.path}{created.name}/")
         return response
@@ -131,11 +130,9 @@ class OneWorld(WorldShowing, RowRoute):
         with self.matching() as row:
             request_deletion(row)  # whoever was as quick finds no world
         started = start_deletion(row, request.user)
-        if not isinstance(started, Job):
-            return Response(status=HTTPStatus.NO_CONTENT)
-        location = {"Location": address_of_job(request, started)}
-        shown = JobSerializer(started).data
-        return Response(shown, status=HTTPStatus.ACCEPTED, headers=location)
+        if isinstance(started, Job):
+            return accepted(request, started)
+        return Response(status=HTTPStatus.NO_CONTENT)
 
     def hold(self) -> None:
         self.hold_world()

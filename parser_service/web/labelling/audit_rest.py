@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
 from typing import Any
 
 from drf_spectacular.utils import extend_schema
@@ -16,7 +15,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.labelling.audit_job import request_audit
 from parser_service.labelling.out_of_fold import AUDITORS
 from parser_service.labelling.precision import precision_of
@@ -74,5 +73,4 @@ class LabelAudit(WorldRoute):
         if not form.is_valid():
             raise refusal_of_form(form)
         job = request_audit(self.world, request.user, form.cleaned_data)
-        location = {"Location": address_of_job(request, job)}
-        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+        return accepted(request, job)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
-
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
@@ -16,7 +14,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.labelling.model_contributor import request_paraphrases
 from parser_service.parsers.llm.protocol import MOST_NAME
 from parser_service.web.labelling.model_forms import (
@@ -55,5 +53,4 @@ class ModelRewrites(WorldRoute):
         if not form.is_valid():
             raise refusal_of_form(form)
         job, _ = request_paraphrases(campaign, form.settings(), request.user)
-        location = {"Location": address_of_job(request, job)}
-        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+        return accepted(request, job)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from http import HTTPStatus
 from typing import Any
 
 import django_filters
@@ -20,7 +19,7 @@ from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.models import Evaluation
 from parser_service.results.export import as_json
 from parser_service.results.measures import Measure, interval_of, is_known
@@ -114,8 +113,7 @@ class Measurement(WorldRoute):
         key = self.read(NewMeasurement).get("split")
         split = get_object_or_404(self.world.splits, pk=key) if key else None
         job = request_measurement(self.world, request.user, split)
-        location = {"Location": address_of_job(request, job)}
-        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+        return accepted(request, job)
 
 
 class Results(WorldRoute):

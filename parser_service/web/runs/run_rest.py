@@ -19,7 +19,7 @@ from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import RowsRoute, RowsViewSet
-from annotations.web.worlds.job_rest import JobSerializer
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import TRAIN_SOURCES, Protocol
 from parser_service.parsers.registry import PARSERS, config_fields
@@ -168,7 +168,7 @@ class RunViewSet(RowsViewSet):
             sentence = f"Run {run.pk} is {run.status}: only one that succeeded is analysed."
             raise Refusal(sentence, "run_not_succeeded", HTTPStatus.CONFLICT)
         job = request_analysis(state.run, request.user, again=state.is_complete)
-        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED)
+        return accepted(request, job)
 
 
 def refusal_of_run(form: RunForm) -> Refusal:

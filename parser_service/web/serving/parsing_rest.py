@@ -28,7 +28,7 @@ from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.rest.streaming import JSON_LINES, JSON_LINES_TYPES, BrokenOff
-from annotations.web.worlds.job_rest import JobSerializer, address_of_job
+from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.parsers.registry import untrained
 from parser_service.serving.batch_requests import request_batch
 from parser_service.serving.parser_client import AWAY, ParserAway, client
@@ -312,8 +312,7 @@ class ParseJobs(WorldRoute):
         if not isinstance(request.data, bytes) or not request.data.strip():
             raise ValidationError("There is no line to parse.")
         job = request_batch(self.world, request.data, by=request.user, **query.validated_data)
-        location = {"Location": address_of_job(request, job)}
-        return Response(JobSerializer(job).data, status=HTTPStatus.ACCEPTED, headers=location)
+        return accepted(request, job)
 
 
 def _all_of(answers: Iterator[bytes], count: int) -> Iterator[bytes]:

@@ -49,7 +49,8 @@ def test_the_form_as_it_is_launches_a_campaign(adam, household):
 def test_a_preview_stores_nothing(adam, household):
     answer = adam.post("/w/home/campaigns/new/", sent(household, preview="1"))
     assert answer.status_code == 200
-    assert answer.context["count"] > 50 and 5 < len(answer.context["prompts"]) <= 8
+    report = answer.context["report"]
+    assert report["count"] > 50 and 5 < len(report["prompts"]) <= 8
     assert not Campaign.objects.exists()
 
 
