@@ -2,6 +2,7 @@
 
     python -m benchmarks.house            # this checkout
     python -m benchmarks.house OLD NEW    # two checkouts: a table of before and after
+    python -m benchmarks.house --packages wagtail -- SITE_PACKAGES    # other code, where it is installed
 
 What is product code counts: Python files of the packages in ``PACKAGES``, without migrations and tests.
 Imports are read from the source, nothing is run. An import inside a function, or for a type checker
@@ -14,11 +15,11 @@ import argparse
 import ast
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from statistics import median, quantiles
+from statistics import mean, median, quantiles
 
 PACKAGES = ("annotations", "parser_service", "gpsr_site", "benchmarks", "clients")
 SHORT_LINES = 25
@@ -42,9 +43,9 @@ class Module:
     lines: int
 
     @property
-    def room(self) -> str:
-        """The package below the app that the module stands in, such as ``annotations.labelling``."""
-        return ".".join(self.name.split(".")[:2])
+    def package(self) -> str:
+        """The package that the module stands in: itself, where it is one."""
+        return self.name if self.path.name == "__init__.py" else self.name.rpartition(".")[0]
 
     @cached_property
     def functions(self) -> list[str]:
@@ -77,10 +78,10 @@ class Module:
         ]
 
 
-def modules_of(root: Path) -> dict[str, Module]:
+def modules_of(root: Path, packages: Sequence[str]) -> dict[str, Module]:
     """Return the product modules of a checkout by dotted name; a package by its own name."""
     modules = {}
-    for package in PACKAGES:
+    for package in packages:
         for path in sorted((root / package).rglob("*.py")):
             if {"migrations", "tests", "node_modules"} & set(path.relative_to(root).parts):
                 continue
@@ -105,16 +106,18 @@ def imports_in(tree: ast.AST, everywhere: bool) -> Iterator[ast.Import | ast.Imp
 class House:
     """The modules of a checkout, and who imports whom."""
 
-    def __init__(self, root: Path):
-        self.modules = modules_of(root)
+    def __init__(self, root: Path, packages: Sequence[str] = PACKAGES):
+        self.modules = modules_of(root, packages)
 
-    def targets(self, node: ast.Import | ast.ImportFrom) -> set[str]:
-        """Return our modules that a statement names."""
+    def targets(self, node: ast.Import | ast.ImportFrom, by: Module) -> set[str]:
+        """Return our modules that a statement in a module names."""
         if isinstance(node, ast.Import):
             names = {alias.name for alias in node.names}
         else:
-            names = {f"{node.module}.{alias.name}" for alias in node.names} | {node.module or ""}
-            inner = {name for name in names if name in self.modules and name != node.module}
+            above = by.package.split(".")[: 1 - node.level or None] if node.level else []
+            source = ".".join((*above, *filter(None, [node.module])))
+            names = {f"{source}.{alias.name}" for alias in node.names} | {source}
+            inner = {name for name in names if name in self.modules and name != source}
             names = inner if len(inner) == len(node.names) else names
         return {name for name in names if name in self.modules}
 
@@ -124,7 +127,7 @@ class House:
             name: {
                 other
                 for node in imports_in(module.tree, everywhere)
-                for other in self.targets(node)
+                for other in self.targets(node, module)
                 if other != name
             }
             for name, module in self.modules.items()
@@ -179,6 +182,7 @@ class House:
             for name in addresses
             for other in self.all_arrows.get(name, ())
             if ".rest." not in other
+            and not other.endswith("_noun")  # pages and routes follow from it
         }
 
     @cached_property
@@ -227,25 +231,31 @@ def groups_of(arrows: dict[str, set[str]]) -> list[list[str]]:
     return groups
 
 
+def middle(numbers: Iterable[int]) -> str:
+    """Return the median; a dash without any number."""
+    found = [*numbers]
+    return f"{median(found):.0f}" if found else "–"
+
+
 def repeated(names: list[str]) -> str:
     """Return how many names several have, and how many have one of these."""
     counts = [count for count in Counter(names).values() if count > 1]
     return f"{len(counts)} names, {sum(counts)}"
 
 
-def figures_of(root: Path) -> dict[str, str]:
+def figures_of(root: Path, packages: Sequence[str]) -> dict[str, str]:
     """Return the figures of a checkout by what they count."""
-    house = House(root)
+    house = House(root, packages)
     modules = list(house.modules.values())
     lines = [module.lines for module in modules if module.lines]
     functions = sum(len(module.functions) for module in modules)
     once = sum(len(module.called_once) for module in modules)
     pages, routes = house.named_by(PAGE_ADDRESSES), house.named_by(ROUTE_ADDRESSES)
-    rooms = {
-        (module.room, house.modules[other].room)
+    arrows = {
+        (module.package, house.modules[other].package)
         for module in modules
         for other in house.all_arrows[module.name]
-        if house.modules[other].room != module.room
+        if house.modules[other].package != module.package
     }
     return {
         "files": f"{len(lines):,}",
@@ -255,8 +265,9 @@ def figures_of(root: Path) -> dict[str, str]:
         ),
         "functions": f"{functions:,}",
         "private functions used in one place": f"{once:,} ({once / functions:.1%})",
-        "files that importing a page loads (median)": f"{median(len(house.reached(page)) for page in pages):.0f}",
-        "files that importing a route loads (median)": f"{median(len(house.reached(route)) for route in routes):.0f}",
+        "files that importing a page loads (median)": f"{middle(len(house.reached(page)) for page in pages)}",
+        "files that importing a route loads (median)": f"{middle(len(house.reached(route)) for route in routes)}",
+        "files that importing a file loads (mean)": f"{mean(len(house.reached(name)) for name in house.modules):.0f}",
         "longest chain of imports": str(house.longest_chain),
         "circles of imports": str(len(house.circles)),
         "imports of a page by a route": str(
@@ -273,7 +284,8 @@ def figures_of(root: Path) -> dict[str, str]:
                 if module.path.name != "__init__.py"
             )
         ),
-        "arrows between rooms": str(len(rooms)),
+        "rooms: packages with code": f"{len({module.package for module in modules if module.lines}):,}",
+        "arrows between rooms": f"{len(arrows):,}",
     }
 
 
@@ -281,15 +293,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("roots", nargs="*", type=Path, default=[Path.cwd()])
     parser.add_argument("--circles", action="store_true", help="also list the circles of imports")
+    parser.add_argument("--packages", nargs="+", default=PACKAGES, help="what is counted")
     chosen = parser.parse_args()
-    columns = [figures_of(root) for root in chosen.roots]
+    columns = [figures_of(root, chosen.packages) for root in chosen.roots]
     print("| |" + "".join(f" {root.resolve().name} |" for root in chosen.roots))
     print("| --- |" + " ---: |" * len(columns))
     for what in columns[0]:
         print(f"| {what} |" + "".join(f" {column[what]} |" for column in columns))
     if chosen.circles:
         for root in chosen.roots:
-            for circle in House(root).circles:
+            for circle in House(root, chosen.packages).circles:
                 print(f"{root.resolve().name}: {' → '.join(sorted(circle))}")
 
 
