@@ -17,7 +17,7 @@ from gpsr_site.web.body_limits import ORDINARY_BYTES
 from gpsr_site.web.thread_shares import THREADS
 
 # Within the 5 s that a stop may take (docs/design/architecture.md, Background work).
-STOP_SECONDS = 4
+STOP_SECONDS = 3
 OPTIONS: dict[str, Any] = {
     "threads": THREADS,
     "connection_limit": 1000,

@@ -22,7 +22,10 @@ pytestmark = [pytest.mark.processes, pytest.mark.django_db(transaction=True)]
 
 
 def has_loaded_torch(process: int) -> bool:
-    return "libtorch" in Path(f"/proc/{process}/maps").read_text()
+    try:
+        return "libtorch" in Path(f"/proc/{process}/maps").read_text()
+    except FileNotFoundError:  # a child that has ended meanwhile
+        return False
 
 
 @pytest.fixture
