@@ -7,10 +7,10 @@ from itertools import groupby
 import pytest
 from django.core.management import CommandError
 
+from parser_service.benchmarking import benchmark_cells as cells_module
 from parser_service.benchmarking.trials import trials
 from parser_service.management.options import read_column
 from parser_service.parsers.conditions import PAPERS_SETTINGS
-from parser_service.results import benchmark_cells as cells_module
 from tests.parser_service.commands.benchmark_run import run
 from tests.parser_service.llm_server import KEY, REPORTED, fails, installed_tiny_server, says
 
