@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from annotations.language.forms import Form, canonical_text, read_form
-from parser_service.analysis.answer_forms import read_or_none
+from annotations.language.forms import Form, canonical_text, read_form, read_or_none
 from parser_service.analysis.error_categories import ErrorCategory
 from parser_service.analysis.error_evidence import NOTHING_MORE, ErrorEvidence, RunEvidence
 from parser_service.analysis.evidence_rules import RULES, ErrorCase

@@ -9,13 +9,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from annotations.language.forms import Form, depth, head_predicate
-from parser_service.analysis.answer_forms import NO_FORM, read_or_none
+from annotations.language.corpus import wilson_intervals
+from annotations.language.forms import Form, depth, head_predicate, read_or_none
+from parser_service.analysis.answer_forms import NO_FORM
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.analysis.clustered import accuracies_in_samples, p_values
 from parser_service.analysis.comparing import LEVEL, holm
 from parser_service.analysis.encoded_labels import EncodedLabels, encode
-from parser_service.analysis.intervals import wilson_intervals
 
 SLICE_SAMPLES = 1_000  # a page has hundreds of intervals of slices
 # Lengths at which a bin begins, in words; the published paraphrases have 2 to 34, the median is 9.

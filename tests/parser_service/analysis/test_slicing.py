@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.clustered import Clustered, interval_of
-from parser_service.analysis.intervals import SAMPLES, wilson_interval
+from parser_service.analysis.intervals import SAMPLES
 from parser_service.analysis.slicing import (
     NO_FORM,
     accuracy_by,
