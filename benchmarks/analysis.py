@@ -21,7 +21,7 @@ from annotations.language.world import Ontology, infer_signatures
 from benchmarks.fresh_site import ROOT
 from parser_service.analysis.all_edits import generate_edits
 from parser_service.analysis.attractors import find_attractors
-from parser_service.analysis.category_proposals import propose_categories
+from parser_service.analysis.category_proposals import propose_category
 from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads, confuse_slots
 from parser_service.analysis.encoded_labels import encode
@@ -37,11 +37,8 @@ from parser_service.analysis.sensitivity import (
     measure_sensitivity,
 )
 from parser_service.analysis.slicing import (
-    accuracy_by,
-    are_seen,
-    form_depths,
+    accuracy_of_labels,
     head_predicates,
-    length_bins,
 )
 
 RUNS = 5
@@ -74,7 +71,7 @@ class AnalysedData:
         self.errors = [pair for pair in pairs if pair[0] != pair[1]]
 
     def slice_by(self, labels: Sequence[object]) -> None:
-        accuracy_by(self.correct, labels, self.clusters)
+        accuracy_of_labels(self.correct, encode(labels), self.clusters)
 
 
 def tasks(world: AnalysedData) -> dict[str, Callable[[], object]]:
@@ -82,11 +79,6 @@ def tasks(world: AnalysedData) -> dict[str, Callable[[], object]]:
     return {
         "comparing": lambda: compare_runs(world.correct, world.clusters),
         "slicing: head predicate": lambda: world.slice_by(head_predicates(world.gold)),
-        "slicing: length": lambda: world.slice_by(length_bins(world.utterances)),
-        "slicing: depth": lambda: world.slice_by(form_depths(world.gold)),
-        "slicing: form seen": lambda: world.slice_by(
-            are_seen(world.gold, world.forms[::2]).tolist()
-        ),
         "confusions: heads": lambda: confuse_heads(
             *(encode(head_predicates(forms)) for forms in (world.gold, world.predicted))
         ),
@@ -100,10 +92,14 @@ def tasks(world: AnalysedData) -> dict[str, Callable[[], object]]:
             [text.partition(" ")[0] for text in world.utterances], right
         ),
         "probing": lambda: make_probes(world.utterances, 200),
-        "categories": lambda: propose_categories(
-            world.gold, world.predicted, RunEvidence(attractors=frozenset({world.forms[0]}))
-        ),
+        "categories": lambda: propose(world),
     }
+
+
+def propose(world: AnalysedData) -> None:
+    evidence = RunEvidence(attractors=frozenset({world.forms[0]}))
+    for label, answer in world.errors:
+        propose_category(read_form(label), read_form(answer), evidence)
 
 
 def edit(world: AnalysedData) -> None:

@@ -1,38 +1,48 @@
-from django.apps import AppConfig
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
 from django.conf import settings
 
+from annotations.apps import WorkbenchApp
 from parser_service.parsers.pretrained_files import keep_encoders_in
 from parser_service.parsers.server_address import ModelServer, Patience, use_server
 
+if TYPE_CHECKING:
+    from annotations.models import World
 
-class ParserServiceConfig(AppConfig):
+
+class ParserServiceConfig(WorkbenchApp):
     """What machines learn: runs, evaluations and predictions."""
 
+    default = True
     name = "parser_service"
+    verbs = {
+        "audit": "parser_service.labelling.audit_job.audit_of",
+        "propose": "parser_service.labelling.parser_proposals.propose",
+        "analyse": "parser_service.reviews.analysis_job.analyse",
+        "answer": "parser_service.reviews.tryout_answers.answer",
+        "measure": "parser_service.results.measuring_job.measure",
+        "parse": "parser_service.serving.batch_job.parse_batch",
+        "paraphrase": "parser_service.labelling.model_contributor.paraphrase_of",
+    }
+    archive_tables = (
+        "parser_service.serving.archived_action_names.ACTION_NAMES",
+        "parser_service.serving.archived_answering.ANSWERING",
+    )
 
-    def ready(self) -> None:
-        from annotations.background import register
-        from annotations.background.job_kinds import register_verb
-        from annotations.exchange.parts import register_part
-        from annotations.generation.stale import register_results
-        from annotations.labelling.proposal_requests import register_parsers
-        from annotations.models import JobKind
+    def results_of(self, splits: Collection[int]) -> dict[str, int]:
         from parser_service.models import TrainingRun
 
-        register(TrainingRun, "parser_service.runs.train_run.train")
-        register_verb(JobKind.AUDIT, "parser_service.labelling.audit_job.audit_of")
-        register_verb(JobKind.PROPOSE, "parser_service.labelling.parser_proposals.propose")
-        register_verb(JobKind.ANALYSE, "parser_service.reviews.analysis_job.analyse")
-        register_verb(JobKind.ANSWER, "parser_service.reviews.tryout_answers.answer")
-        register_verb(JobKind.MEASURE, "parser_service.results.measuring_job.measure")
-        register_verb(JobKind.PARSE, "parser_service.serving.batch_job.parse_batch")
-        register_verb(
-            JobKind.PARAPHRASE, "parser_service.labelling.model_contributor.paraphrase_of"
-        )
-        register_parsers(lambda world: TrainingRun.objects.succeeded().filter(world=world).exists())
-        register_part("parser_service.serving.archived_action_names.ACTION_NAMES")
-        register_part("parser_service.serving.archived_answering.ANSWERING")
-        register_results("run", lambda keys: TrainingRun.objects.filter(split__in=keys).count())
+        return {"run": TrainingRun.objects.filter(split__in=splits).count()}
+
+    def has_parser(self, world: World) -> bool:
+        from parser_service.models import TrainingRun
+
+        return TrainingRun.objects.succeeded().filter(world=world).exists()
+
+    def ready(self) -> None:
         keep_encoders_in(
             settings.ENCODERS_DIR, settings.VAR_DIR / "vectors", settings.ENCODER_PACKAGES
         )

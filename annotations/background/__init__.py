@@ -1,8 +1,7 @@
 """Work that a worker carries out: claimed by one, fenced, leased, cancelled, resumed.
 
-A kind of work is a model that extends ``BackgroundWork`` and a function ``carry_out(work, give_up)``,
-registered in an app config. Whoever wants some creates a queued row and calls ``wake``; a worker does
-the rest. The function brings the work to its end inside ``while_held``.
+A kind of work is a model that extends ``BackgroundWork`` and names a function ``(work, give_up)``, which
+brings the work to its end inside ``while_held``. Whoever wants some creates a queued row and calls ``wake``.
 """
 
 from annotations.background.carrying_out import while_held
@@ -20,7 +19,7 @@ from annotations.background.fencing import (
     log,
     record_progress,
 )
-from annotations.background.kinds import carry_out, claim_in_turn, kinds, register
+from annotations.background.kinds import carry_out, claim_in_turn, kinds
 from annotations.background.lease_watch import LeaseWatch
 from annotations.background.leasing import Lease, Stopped
 from annotations.background.outages import DatabaseAway, outlasting
@@ -34,39 +33,3 @@ from annotations.background.waking import (
     wake_for_next,
 )
 from annotations.models.background import LEASE
-
-__all__ = [
-    "LEASE",
-    "MOST_RESUMES",
-    "TASK",
-    "DatabaseAway",
-    "Fenced",
-    "Lease",
-    "LeaseWatch",
-    "Stopped",
-    "acknowledge_cancel",
-    "cancel",
-    "carry_out",
-    "claim",
-    "claim_in_turn",
-    "extend",
-    "fail",
-    "failure_sentence",
-    "finish",
-    "hand_back",
-    "held",
-    "is_cancel_requested",
-    "is_out_of_memory",
-    "kinds",
-    "log",
-    "message_queue",
-    "outlasting",
-    "record_progress",
-    "register",
-    "requeue_expired",
-    "send_wake_up",
-    "wake",
-    "wake_for_forgotten",
-    "wake_for_next",
-    "while_held",
-]

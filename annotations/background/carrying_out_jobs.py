@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable
+from typing import Any
+
+from django.utils.module_loading import import_string
 
 from annotations import background
+from annotations.apps import workbench_apps
 from annotations.background.job_files import forget_files
-from annotations.background.job_kinds import verb_of
 from annotations.background.requesting import refusal_in
 from annotations.background.sweeping import sweep
 from annotations.background.watching import JobProgress
-from annotations.models import Job, JobKind
+from annotations.models import Job
 
 
 def carry_out(job: Job, give_up: Callable[[], None] | None = None) -> None:
@@ -22,9 +26,15 @@ def carry_out(job: Job, give_up: Callable[[], None] | None = None) -> None:
     sweep()
 
 
+def verb_of(kind: str) -> Callable[[Job, JobProgress], dict[str, Any]]:
+    """Load the function that carries out jobs of ``kind``. Raises KeyError where no app has one."""
+    verbs = ChainMap(*(dict(app.verbs) for app in workbench_apps()))
+    return import_string(verbs[kind])  # type: ignore[no-any-return]
+
+
 def _do(job: Job, lease: background.Lease) -> None:
     progress = JobProgress(job, lease)
-    report = verb_of(JobKind(job.kind))(job, progress)
+    report = verb_of(job.kind)(job, progress)
     if progress.is_concluded:
         return
     if refusal := refusal_in(report):

@@ -1,36 +1,20 @@
-"""The kinds of work. App configs register them; a worker treats them all alike."""
+"""The kinds of work. A worker treats them all alike."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 
+from django.apps import apps
 from django.utils.module_loading import import_string
 
 from annotations.background.fencing import claim
 from annotations.models.background import BackgroundWork
 
 
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """A model and the dotted path of its ``carry_out(work, give_up)``, loaded in a worker's child only."""
-
-    model: type[BackgroundWork]
-    dotted: str
-
-
-_KINDS: dict[type[BackgroundWork], Kind] = {}
-
-
-def register(model: type[BackgroundWork], dotted: str) -> None:
-    """Let workers carry out the work of ``model``. Called once, by an app config."""
-    _KINDS[model] = Kind(model, dotted)
-
-
-def kinds() -> tuple[Kind, ...]:
-    """Return every kind of work, in the order of the installed apps."""
-    return tuple(_KINDS.values())
+def kinds() -> list[type[BackgroundWork]]:
+    """Return every model of background work, in the order of the installed apps."""
+    return [model for model in apps.get_models() if issubclass(model, BackgroundWork)]
 
 
 def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
@@ -38,7 +22,7 @@ def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
 
     The queue that ``worker`` took its last work from comes last, so that a full queue starves no other.
     """
-    of_worker = (kind.model.objects.filter(worker=worker) for kind in kinds())
+    of_worker = (kind.objects.filter(worker=worker) for kind in kinds())
     begun = [work for rows in of_worker if (work := rows.order_by("-started_at").first())]
     last = max(begun, key=attrgetter("started_at")).queue if begun else None
     at = queues.index(last) + 1 if last in queues else 0
@@ -48,7 +32,7 @@ def claim_in_turn(worker: str, queues: Sequence[str]) -> BackgroundWork | None:
 
 def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:
     while True:
-        queued = (kind.model.objects.queued().filter(queue=queue) for kind in kinds())
+        queued = (kind.objects.queued().filter(queue=queue) for kind in kinds())
         waiting = [work for rows in queued if (work := rows.order_by("queued_at", "id").first())]
         if not waiting:
             return None
@@ -59,4 +43,4 @@ def _claim_oldest(worker: str, queue: str) -> BackgroundWork | None:
 
 def carry_out(work: BackgroundWork, give_up: Callable[[], None] | None = None) -> None:
     """Bring claimed work to its end. ``give_up`` ends the process where it does not stop in time."""
-    import_string(_KINDS[type(work)].dotted)(work, give_up)
+    import_string(work.carried_out_by)(work, give_up)

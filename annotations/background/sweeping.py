@@ -1,4 +1,4 @@
-"""Clears away what interrupted jobs have left: files that nobody needs, and what verbs have registered."""
+"""Clears away what interrupted jobs have left: files that nobody needs, and what the apps' sweeps find."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from datetime import timedelta
 from pathlib import Path
 
 from django.utils import timezone
+from django.utils.module_loading import import_string
 
+from annotations.apps import workbench_apps
 from annotations.background.job_files import jobs_folder, results_folder
-from annotations.background.job_kinds import sweeps
 from annotations.models import Job
 
 # How long an import that asks waits for its answer, and how long work outside of any job may take.
@@ -32,8 +33,8 @@ def sweep() -> None:
     for file in results_folder().glob("*"):
         if _is_old(file, RESULTS_KEPT_FOR):
             file.unlink(missing_ok=True)
-    for sweep_others in sweeps():
-        sweep_others()
+    for dotted in (dotted for app in workbench_apps() for dotted in app.sweeps):
+        import_string(dotted)()
 
 
 def _is_old(path: Path, kept_for: timedelta = KEPT_FOR) -> bool:

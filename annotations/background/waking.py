@@ -58,7 +58,7 @@ def _broker_errors() -> tuple[type[Exception], ...]:
 def wake_for_next(queues: Sequence[str]) -> None:
     """Send a message if anything waits in one of ``queues``. Which one it names does not matter."""
     for kind in kinds():
-        waiting = kind.model.objects.queued().filter(queue__in=queues)
+        waiting = kind.objects.queued().filter(queue__in=queues)
         if queue := waiting.values_list("queue", flat=True).first():
             return send_wake_up(queue)
 
@@ -68,13 +68,12 @@ def wake_for_forgotten(worker: str, queues: Sequence[str], waited: timedelta = W
 
     None while ``worker`` itself is busy: that would only fill a queue that it cannot read.
     """
-    models = [kind.model for kind in kinds()]
-    if any(model.objects.running().filter(worker=worker).exists() for model in models):
+    if any(model.objects.running().filter(worker=worker).exists() for model in kinds()):
         return 0
     since = timezone.now() - waited
     names = [
         name
-        for model in models
+        for model in kinds()
         for name in model.objects.queued()
         .filter(queue__in=queues, queued_at__lte=since)
         .values_list("queue", flat=True)

@@ -42,7 +42,7 @@ class ContributorFigures:
     @property
     def interval(self) -> tuple[float, float] | None:
         """The 95 % interval of the acceptance."""
-        return wilson_interval(self.accepted / self.decided, self.decided) if self.decided else None
+        return wilson_interval(self.accepted, self.decided) if self.decided else None
 
     # For sorting: nobody's acceptance and pace come last.
     @property

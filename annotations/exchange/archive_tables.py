@@ -10,7 +10,7 @@ from typing import Any
 from django.db import models
 from django.utils.module_loading import import_string
 
-from annotations.exchange.parts import registered_parts
+from annotations.apps import workbench_apps
 from annotations.models import (
     Assignment,
     AuditDecision,
@@ -257,5 +257,6 @@ OUR_TABLES = (
 
 @cache
 def tables() -> tuple[ArchiveTable, ...]:
-    """Return all tables of an archive: ours, then those that other applications have registered."""
-    return (*OUR_TABLES, *map(import_string, registered_parts()))
+    """Return all tables of an archive: ours, then those of other apps."""
+    theirs = (import_string(dotted) for app in workbench_apps() for dotted in app.archive_tables)
+    return (*OUR_TABLES, *theirs)

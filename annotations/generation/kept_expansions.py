@@ -58,7 +58,7 @@ def expansions_of(grammar: Grammar, lines: Lines = ()) -> GrammarExpansions:
 
 
 def _key(grammar: Grammar, lines: Lines) -> Hashable:
-    return id(grammar), tuple(map(_texts, lines))
+    return id(grammar), tuple(line.texts for line in lines)
 
 
 def generate_at_once(categories: Sequence[TaskCategory]) -> Generated:
@@ -68,14 +68,14 @@ def generate_at_once(categories: Sequence[TaskCategory]) -> Generated:
         LanguageError: the templates make more than ``MOST_AT_ONCE`` commands, or as ``generate``.
     """
     content = tuple(
-        (category.name, category.grammar.productions, tuple(map(_texts, category.templates)))
+        (
+            category.name,
+            category.grammar.productions,
+            tuple(template.texts for template in category.templates),
+        )
         for category in categories
     )
     return _GENERATED.get(content, lambda: _generate(categories))
-
-
-def _texts(template: SemanticTemplate) -> tuple[str, str]:
-    return template.pattern_text, template.form_text
 
 
 def _generate(categories: Sequence[TaskCategory]) -> Generated:
@@ -109,7 +109,7 @@ def problems_of(
         LanguageError: the grammar has a cycle.
     """
     predicates = tuple((checker.predicates or {}).values())
-    key = (predicates, checker.task_category, checker.limit, _texts(template))
+    key = (predicates, checker.task_category, checker.limit, template.texts)
     kept = _checks_of(checker.grammar, checker.expander.rules.lines).problems
     return kept.get(key, lambda: checker.problems(template, budget))
 

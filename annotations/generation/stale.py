@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import islice
 
+from annotations.apps import workbench_apps
 from annotations.models import Example, Split, World
 from annotations.models.splits import Source
 from annotations.rows.synchronise import batches
 
 # Commands that are looked up; a change of more finds the splits that hold one of these.
 MOST_COMMANDS = 2_000
-
-# What people see of results made with a split → how many there are of the splits with these keys.
-_RESULTS: dict[str, Callable[[Collection[int]], int]] = {}
 
 
 @dataclass(frozen=True)
@@ -23,11 +21,6 @@ class StaleSplits:
 
     splits: tuple[Split, ...] = ()
     results: tuple[tuple[str, int], ...] = ()
-
-
-def register_results(noun: str, count: Callable[[Collection[int]], int]) -> None:
-    """Count ``noun`` among the results made with splits. For the ``ready`` of an app that has some."""
-    _RESULTS[noun] = count
 
 
 def stale_splits(world: World, forms_before: Mapping[str, str]) -> StaleSplits:
@@ -41,7 +34,7 @@ def stale_splits(world: World, forms_before: Mapping[str, str]) -> StaleSplits:
                 keys.add(key)
     if not keys:
         return StaleSplits()
-    counts = tuple((noun, count(keys)) for noun, count in _RESULTS.items())
+    counts = (count for app in workbench_apps() for count in app.results_of(keys).items())
     return StaleSplits(
-        tuple(Split.objects.filter(pk__in=keys)), tuple(pair for pair in counts if pair[1])
+        tuple(Split.objects.filter(pk__in=keys)), tuple(count for count in counts if count[1])
     )

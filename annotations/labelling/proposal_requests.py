@@ -3,18 +3,9 @@ command without a form."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from annotations.apps import workbench_apps
 from annotations.background.requesting import request_job, request_job_once
 from annotations.models import Job, JobKind, Submission, User, World
-
-# Each says whether a world has a parser that could answer.
-_PARSERS: list[Callable[[World], bool]] = []
-
-
-def register_parsers(has_parser: Callable[[World], bool]) -> None:
-    """Ask ``has_parser`` whether a world has a parser. For the ``ready`` of an app that trains some."""
-    _PARSERS.append(has_parser)
 
 
 def request_proposals(world: World, by: User | None = None) -> Job | None:
@@ -30,7 +21,7 @@ def request_proposals(world: World, by: User | None = None) -> Job | None:
 def request_readings(world: World) -> Job | None:
     """Queue the job once somebody has submitted or decided something, unless one waits or no parser could answer; None
     then."""
-    has_one = any(has_parser(world) for has_parser in _PARSERS)
+    has_one = any(app.has_parser(world) for app in workbench_apps())
     return request_proposals(world) if has_one else None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -124,6 +125,35 @@ class ReportingCommand(BaseCommand):
         self.stdout.write(text)
 
 
+class ImportCommand(ReportingCommand):
+    """Imports a folder or an archive into a world; says what it left out."""
+
+    def add_options(self, parser: CommandParser) -> None:
+        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
+        parser.add_argument("--world", required=True, help="made where there is none")
+        parser.add_argument(
+            "--bring-back",
+            action="store_true",
+            help="restore what people have deleted in the world; left out without it",
+        )
+        parser.add_argument(
+            "--encoding",
+            choices=ENCODINGS,
+            metavar="ENCODING",
+            default="",
+            help="of files that are not UTF-8; refused without it, with what encodings would read: "
+            + ", ".join(ENCODINGS),
+        )
+
+    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
+        return str(options["folder"])
+
+    def describe(self, report: Mapping[str, Any]) -> str:
+        left_out = report["left_out"]
+        rows = chain(*left_out.values()) if isinstance(left_out, Mapping) else left_out
+        return "\n".join([super().describe(report), *(f"  left out: {row}" for row in rows)])
+
+
 def _show(problem: Problem, folder: Path) -> str:
     """Return the problem, and below it the line of its file with a caret at its column."""
     try:
@@ -141,31 +171,6 @@ def _in_words(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{key} {_in_words(item)}" for key, item in value.items()) or "none"
     return str(len(value)) if isinstance(value, list) else str(value)
-
-
-def add_brings_back(parser: CommandParser) -> None:
-    """Declare the option of imports that restores what people have deleted."""
-    parser.add_argument(
-        "--bring-back",
-        action="store_true",
-        help="restore what people have deleted in the world; left out without it",
-    )
-
-
-def add_encoding(parser: CommandParser) -> None:
-    """Declare what files are read as that are not UTF-8."""
-    parser.add_argument(
-        "--encoding",
-        choices=ENCODINGS,
-        metavar="ENCODING",
-        default="",
-        help=f"of files that are not UTF-8; refused without it, with what encodings would read: {', '.join(ENCODINGS)}",
-    )
-
-
-def say_left_out(report: Mapping[str, Any]) -> list[str]:
-    """Return a line for each row that an import left out."""
-    return [f"  left out: {text}" for texts in report["left_out"].values() for text in texts]
 
 
 def find_world(name: str) -> World:

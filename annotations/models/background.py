@@ -84,11 +84,13 @@ class BackgroundWork(models.Model):
     """One piece of work. ``attempt`` is the fencing token of whoever carries it out now; ``resumes``
     counts how often a worker was lost with it (a worker that stops in good order does not count).
 
-    ``noun`` is what messages call it; ``resumption`` what happens to it after an interruption.
+    ``noun`` is what messages call it; ``resumption`` what happens to it after an interruption;
+    ``carried_out_by`` the dotted path of a function ``(work, give_up)``, loaded in a worker's child only.
     """
 
     noun: ClassVar[str] = "job"
     resumption: ClassVar[str] = "starting over"
+    carried_out_by: ClassVar[str]
 
     queue = models.CharField(max_length=8, choices=queue_choices, default=Queue.CPU)
     status = models.CharField(max_length=12, choices=status_choices, default=Status.QUEUED)
@@ -205,8 +207,7 @@ class Job(BackgroundWork):
     the job has ended, or until somebody has answered the question that its report asks.
     """
 
-    noun: ClassVar[str] = "job"
-    resumption: ClassVar[str] = "starting over"
+    carried_out_by: ClassVar[str] = "annotations.background.carrying_out_jobs.carry_out"
 
     world = models.ForeignKey(
         World, null=True, blank=True, on_delete=models.CASCADE, related_name="jobs"

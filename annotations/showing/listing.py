@@ -16,7 +16,7 @@ from django.utils.cache import patch_vary_headers
 from django_filters import FilterSet
 
 from annotations.people.access import PageRequest
-from annotations.showing.paging import PAGE_SIZE, Page, page_of
+from annotations.showing.paging import PAGE_SIZE, Page, opposite, page_of
 
 PLACE = ("after", "before", "page", "finding")
 
@@ -118,9 +118,7 @@ class FilteredList:
     @property
     def order(self) -> str:
         field = self.sorts[self.sort_name].field
-        if not self.is_descending:
-            return field
-        return field[1:] if field.startswith("-") else f"-{field}"
+        return opposite(field) if self.is_descending else field
 
     @property
     def sort_name(self) -> str:

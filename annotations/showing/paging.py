@@ -21,6 +21,11 @@ def number_in(text: str) -> int:
     return int(text) if text.isascii() and text.isdigit() and len(text) < 19 else 0
 
 
+def opposite(order: str) -> str:
+    """Return the other direction of an order such as ``-name``."""
+    return order[1:] if order.startswith("-") else f"-{order}"
+
+
 @dataclass(frozen=True, slots=True)
 class Page:
     """Rows in order, and the cursors of the previous and next page (empty where there is none)."""

@@ -62,10 +62,9 @@ def page_title(context: Any, content: str) -> str:
 
 
 @register.simple_block_tag(takes_context=True, end_name="end_page_head")
-def page_head(
-    context: Any, content: str, title: str = "", aside: str = "", actions: str = ""
-) -> str:
-    """Render the head of a page (see ``_page_head.html``) with ``content`` as its sentence.
+def page_head(context: Any, content: str, title: str = "", aside: str = "") -> str:
+    """Render the head of a page (see ``_page_head.html``) with ``content`` as its sentence; an ``actions`` in it holds
+    the buttons.
 
     ``title`` is for a name that is shown with marks, such as the chips of a command.
     """
@@ -74,9 +73,16 @@ def page_head(
         "title": title,
         "aside": aside,
         "about": mark_safe(content.strip()),
-        "actions": actions,
+        "actions": context.render_context.get("actions", ""),
     }
     return _render_inside(context, "_page_head.html", values)
+
+
+@register.simple_block_tag(takes_context=True, end_name="end_actions")
+def actions(context: Any, content: str) -> str:
+    """Keep what may be done on a page for the ``page_head`` around it."""
+    context.render_context["actions"] = mark_safe(content.strip())
+    return ""
 
 
 @register.simple_block_tag(takes_context=True, end_name="end_filtered_list")

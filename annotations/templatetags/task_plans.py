@@ -52,7 +52,6 @@ def facts(step: Mapping[str, Any]) -> list[str]:
     return said
 
 
-@register.filter
 def value_text(value: Mapping[str, Any] | None) -> str:
     """Write a value of a plan in a few words; empty for none."""
     if not value:

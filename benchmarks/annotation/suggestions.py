@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
+from annotations.language.corpus import wilson_interval
 from annotations.language.forms import (
     Symbols,
     canonical_text,
@@ -46,7 +47,6 @@ from annotations.language.templates import (
 from annotations.language.texts import Position
 from annotations.language.world import Predicate
 from benchmarks.fresh_site import DATA
-from parser_service.analysis.intervals import wilson_interval
 
 SHARES = (0.0, 0.5, 0.6, 0.7, SURE_SHARE, 0.8, 0.9)
 

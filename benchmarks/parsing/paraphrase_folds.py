@@ -84,8 +84,8 @@ def main() -> None:
     given = given_by.parse_args()
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
     django.setup()
+    from annotations.language.corpus import wilson_interval
     from annotations.models import Split, World
-    from parser_service.analysis.intervals import wilson_interval
     from parser_service.management.options import read_hyperparameters
     from parser_service.parsers.registry import load_class, make_config
     from parser_service.runs.knowledge import knowledge_of, plan_agreement_of

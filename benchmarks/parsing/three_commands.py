@@ -48,8 +48,8 @@ def main() -> None:
     given = parser.parse_args()
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
     django.setup()
+    from annotations.language.corpus import wilson_interval
     from annotations.models import World
-    from parser_service.analysis.intervals import wilson_interval
     from parser_service.models import TrainingRun
     from parser_service.parsers.interface import UNKNOWN
     from parser_service.parsers.oracle import GrammarOracle

@@ -86,10 +86,10 @@ def workers_now() -> Workers:
     counts: Counter[tuple[str, str]] = Counter()
     nouns = set()
     for kind in kinds():
-        rows = kind.model.objects.active().order_by().values_list("status", "queue")
+        rows = kind.objects.active().order_by().values_list("status", "queue")
         for status, queue, count in rows.annotate(count=Count("pk")):
             counts[status, queue] += count
-            nouns.add(kind.model.noun)
+            nouns.add(kind.noun)
     return Workers(
         served=set(Worker.objects.alive_by_queue()),
         running=sum(count for (status, _), count in counts.items() if status == Status.RUNNING),

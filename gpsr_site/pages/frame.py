@@ -78,7 +78,7 @@ def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
         "can": can,
         "rail": SimpleLazyObject(lambda: _rail(world, counts, way)),
         "tabs": SimpleLazyObject(lambda: list(_tabs(world, counts, duties, way)) if here else []),
-        "trail": [_crumb(world, place) for place in way if place is not here],
+        "trail": [Crumb(place.label, _url_of(world, place)) for place in way if place is not here],
         "page_name": way[-1].label if way else "",
     }
 
@@ -124,10 +124,6 @@ def _entry(
         dot=waiting(counts),
         is_current=is_current,
     )
-
-
-def _crumb(world: World, place: Place) -> Crumb:
-    return Crumb(place.label, _url_of(world, place))
 
 
 def _url_of(world: World, place: Place) -> str:

@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from annotations.language.forms import Form, equivalent, read_form
-from annotations.language.texts import LanguageError
+from annotations.language.forms import equivalent, read_or_none
 
 NO_FORM = "not a form"  # stands for what cannot be read where forms are counted
-
-
-def read_or_none(text: str) -> Form | None:
-    """Return the form that a text writes in any notation; None where it is not a form."""
-    try:
-        return read_form(text)
-    except LanguageError:
-        return None
 
 
 def is_same_answer(first: str, second: str) -> bool:

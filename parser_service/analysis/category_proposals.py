@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from annotations.language.forms import Form, canonical_text, read_form
-from parser_service.analysis.answer_forms import read_or_none
+from annotations.language.forms import Form, canonical_text
 from parser_service.analysis.error_categories import ErrorCategory
 from parser_service.analysis.error_evidence import NOTHING_MORE, ErrorEvidence, RunEvidence
 from parser_service.analysis.evidence_rules import RULES, ErrorCase
@@ -63,31 +61,6 @@ def propose_category(
         by_category.setdefault(proposal.category, proposal)
     first, *others = by_category.values()
     return Proposals(first, tuple(others))
-
-
-def propose_categories(
-    gold: Sequence[str], predicted: Sequence[str], run: RunEvidence | None = None
-) -> list[Proposals | None]:
-    """Propose a category for many answers by what is known of the run; equal errors share their proposals.
-
-    Args:
-        gold: the labels as text, [examples].
-        predicted: the answers as text, which need not be forms: [examples].
-        run: what is known of the run and its world.
-
-    Returns:
-        Proposals, None where the answer is right: [examples].
-
-    Raises:
-        LanguageError: a label is not a form.
-        ValueError: there are not as many answers as labels.
-    """
-    by_pair: dict[tuple[str, str], Proposals | None] = {}
-    for pair in dict.fromkeys(zip(gold, predicted, strict=True)):
-        label, answer = read_form(pair[0]), read_or_none(pair[1])
-        is_right = answer is not None and canonical_text(label) == canonical_text(answer)
-        by_pair[pair] = None if is_right else propose_category(label, answer, run)
-    return [by_pair[pair] for pair in zip(gold, predicted, strict=True)]
 
 
 @lru_cache(maxsize=1 << 14)

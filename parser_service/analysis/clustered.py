@@ -16,8 +16,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.arrays import Floats, Ints
-from parser_service.analysis.intervals import SAMPLES, SEED, wilson_interval
+from parser_service.analysis.intervals import SAMPLES, SEED
 
 Interval: TypeAlias = tuple[float, float]
 Tally: TypeAlias = "Mapping[Hashable, tuple[float, float]]"

@@ -17,9 +17,9 @@ from annotations.language.forms import (
     Application,
     Difference,
     diff_unordered,
+    read_or_none,
 )
 from annotations.language.world import ArgumentKind, argument_kind
-from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Ints
 from parser_service.analysis.encoded_labels import EncodedLabels, distinct_pairs, encode
 

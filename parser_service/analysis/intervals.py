@@ -1,7 +1,4 @@
-"""95 % intervals of a share: Wilson's of a proportion, and a bootstrap's of a ratio.
-
-Wilson, Probable inference, the law of succession, and statistical inference, Journal of the American
-Statistical Association 22, 1927. Unlike the usual ± it is also right near 0 and 1 and for few examples.
+"""The 95 % interval of a ratio, by a bootstrap.
 
 The bootstrap costs the same for a thousand examples and for a million: a sample with replacement is known from
 how often it has each *distinct* example, and these counts are multinomial. Percentile intervals: Efron and
@@ -11,38 +8,14 @@ Tibshirani, An Introduction to the Bootstrap, 1993.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from annotations.language.corpus import Z_95, wilson_interval
 from parser_service.analysis.arrays import Floats, Ints
 
-Z_95 = 1.959963984540054
 SAMPLES = 2000
 SEED = 2019
 _DECIMALS = 6  # sums that agree to so many places count as the same example
 _MOST_KINDS = 1000  # distinct examples that are resampled
-
-
-def wilson_interval(correct: float, count: float) -> tuple[float, float]:
-    """Return the 95 % interval of ``correct`` out of ``count``, at least 1. Both ends are in 0–1."""
-    low, high = wilson_intervals(correct, count)
-    return float(low), float(high)
-
-
-def wilson_intervals(correct: ArrayLike, count: ArrayLike) -> tuple[Floats, Floats]:
-    """Return the lower and the upper ends of the 95 % intervals.
-
-    Args:
-        correct: numbers of successes, any shape.
-        count: numbers of trials, a shape that broadcasts with it; where 0, both ends are NaN.
-    """
-    trials = np.asarray(count, dtype=float)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        share = np.asarray(correct, dtype=float) / trials
-        spread = Z_95**2 / trials
-        centre = share + spread / 2
-        reach = np.sqrt(spread * (share * (1 - share) + spread / 4))
-        low, high = (centre - reach) / (1 + spread), (centre + reach) / (1 + spread)
-    return np.maximum(0.0, low), np.minimum(1.0, high)
 
 
 def multinomial_samples(counts: Ints, samples: int, random: np.random.Generator) -> Ints:

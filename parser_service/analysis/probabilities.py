@@ -13,8 +13,8 @@ from math import exp
 import numpy as np
 from numpy.typing import ArrayLike
 
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.arrays import Bools
-from parser_service.analysis.intervals import wilson_interval
 
 BINS = 10
 NO_PROBABILITY = (

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from statistics import fmean, stdev
 from typing import Protocol, TypeAlias
 
+from annotations.language.corpus import wilson_interval
 from annotations.language.forms import Form, canonical_text, equivalent, read_form
 from annotations.language.texts import LanguageError
-from parser_service.analysis.intervals import wilson_interval
 
 
 class Judged(Protocol):

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from annotations.language.forms import FormDistances
-from parser_service.analysis.answer_forms import read_or_none
+from annotations.language.corpus import wilson_interval
+from annotations.language.forms import FormDistances, read_or_none
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.analysis.encoded_labels import distinct_pairs, encode
-from parser_service.analysis.intervals import SEED, ratio_interval, wilson_interval
+from parser_service.analysis.intervals import SEED, ratio_interval
 
 ALL_KINDS = "all"
 LEVEL = 0.05  # a q-value up to this is called significant

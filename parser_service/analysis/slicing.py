@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
 
-from annotations.language.forms import Form, depth, head_predicate
-from parser_service.analysis.answer_forms import NO_FORM, read_or_none
+from annotations.language.corpus import wilson_intervals
+from annotations.language.forms import head_predicate, read_or_none
+from parser_service.analysis.answer_forms import NO_FORM
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.analysis.clustered import accuracies_in_samples, p_values
 from parser_service.analysis.comparing import LEVEL, holm
 from parser_service.analysis.encoded_labels import EncodedLabels, encode
-from parser_service.analysis.intervals import wilson_intervals
 
 SLICE_SAMPLES = 1_000  # a page has hundreds of intervals of slices
 # Lengths at which a bin begins, in words; the published paraphrases have 2 to 34, the median is 9.
@@ -47,32 +47,19 @@ class SliceAccuracies:
             return self.correct / self.counts
 
 
-def accuracy_by(
-    correct: Bools,
-    labels: Sequence[Hashable],
-    clusters: Ints,
-    values: Sequence[Hashable] = (),
+def accuracy_of_labels(
+    correct: Bools, labels: EncodedLabels[Any], clusters: Ints, samples: int = SLICE_SAMPLES
 ) -> SliceAccuracies:
     """Return the accuracy of each run in each slice.
 
     Args:
         correct: whether each run is right on each example, [runs, examples].
-        labels: the slice of each example, [examples].
+        labels: the slice of each example, [examples]; a code without a value is in no slice.
         clusters: the cluster of each example, as small whole numbers from 0 (``outcomes.encode_clusters``).
-        values: slices to list first, in this order, even where empty; the others follow in the
-            order of their first appearance.
 
     Raises:
         ValueError: there are not as many labels or clusters as examples.
     """
-    return accuracy_of_labels(correct, encode(labels, values), clusters)
-
-
-def accuracy_of_labels(
-    correct: Bools, labels: EncodedLabels[Any], clusters: Ints, samples: int = SLICE_SAMPLES
-) -> SliceAccuracies:
-    """Return the accuracy of each run in each slice for encoded labels; a code without a value is in no slice.
-    Raises ValueError as ``accuracy_by`` does."""
     _require_same_length(correct, len(labels.codes))
     _require_same_length(correct, len(clusters))
     shape = len(labels.values), int(clusters.max(initial=0)) + 1
@@ -148,48 +135,13 @@ def _are_best(samples: Floats, right: Ints) -> Bools:
 
 def head_predicates(forms: Sequence[str]) -> list[str]:
     """Return the head predicate of each form; ``UNKNOWN`` for one without."""
-    return _of_distinct(forms, head_predicate, NO_FORM)
-
-
-def form_depths(forms: Sequence[str]) -> list[int | str]:
-    """Return how deep λs and applications nest in each form, from 0 for ``UNKNOWN``."""
-    return _of_distinct(forms, depth, NO_FORM)
-
-
-def count_words(utterances: Sequence[str]) -> list[int]:
-    """Return the number of words of each utterance; words are what spaces separate."""
-    return [len(text.split()) for text in utterances]
-
-
-def length_bins(utterances: Sequence[str], starts: Sequence[int] = BIN_STARTS) -> list[str]:
-    """Return for each utterance the bin of its number of words, such as ``5–8 words``.
-
-    Args:
-        utterances: texts.
-        starts: the smallest number of words of each bin, ascending. An utterance below the first
-            is in the first bin.
-    """
-    names = bin_names(starts)
-    places = np.digitize(count_words(utterances), starts[1:])
-    return [names[place] for place in places.tolist()]
+    encoded = encode(forms)
+    read = (read_or_none(text) for text in encoded.values)
+    values = [NO_FORM if form is None else head_predicate(form) for form in read]
+    return [values[code] for code in encoded.codes.tolist()]
 
 
 def bin_names(starts: Sequence[int] = BIN_STARTS) -> tuple[str, ...]:
-    """Return the names of the bins of ``length_bins``, shortest first."""
+    """Return the names of the bins of numbers of words, shortest first."""
     inner = (f"{low}–{high - 1} words" for low, high in pairwise(starts))
     return (*inner, f"{starts[-1]} words or more")
-
-
-def are_seen(forms: Sequence[str], training_forms: Iterable[str]) -> Bools:
-    """Return whether each form, canonical text, is among those of the training pairs: [examples]."""
-    known = frozenset(training_forms)
-    return np.fromiter((form in known for form in forms), dtype=bool, count=len(forms))
-
-
-def _of_distinct(
-    forms: Sequence[str], value_of: Callable[[Form], Value], otherwise: str
-) -> list[Value | str]:
-    encoded = encode(forms)
-    read = (read_or_none(text) for text in encoded.values)
-    values = [otherwise if form is None else value_of(form) for form in read]
-    return [values[code] for code in encoded.codes.tolist()]

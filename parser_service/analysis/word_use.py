@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from annotations.language.forms import head_predicate, predicates
+from annotations.language.forms import head_predicate, predicates, read_or_none
 from annotations.language.texts import ARTICLES
-from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.arrays import Bools, Floats, Ints
 from parser_service.parsers.remembering import remembered
 

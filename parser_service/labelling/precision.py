@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from django.db.models import Count
 
+from annotations.language.corpus import wilson_interval
 from annotations.models import FindingStatus, World
-from parser_service.analysis.intervals import wilson_interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,33 +11,3 @@ from parser_service.models.reviews import ErrorCategory, Review, Slice
 from parser_service.models.runs import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.models.tryouts import Tryout
 from parser_service.models.workers import Worker
-
-__all__ = [
-    "ActionNames",
-    "AnswerColumns",
-    "AnswererEvaluation",
-    "Answering",
-    "AnsweringOrder",
-    "Checkpoint",
-    "Dialogue",
-    "EpochMetric",
-    "ErrorCategory",
-    "Evaluation",
-    "ExampleColumns",
-    "Expectation",
-    "OfferState",
-    "OfferedEntity",
-    "Prediction",
-    "Probe",
-    "ProbeAnswer",
-    "Promotion",
-    "PromotionState",
-    "Review",
-    "RunAnalysis",
-    "RunEvent",
-    "RunFolder",
-    "Slice",
-    "TrainingRun",
-    "Tryout",
-    "Worker",
-]

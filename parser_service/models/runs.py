@@ -82,6 +82,7 @@ class TrainingRun(BackgroundWork):
 
     noun: ClassVar[str] = "run"
     resumption: ClassVar[str] = "resuming from the last checkpoint"
+    carried_out_by: ClassVar[str] = "parser_service.runs.train_run.train"
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="runs")
     split = models.ForeignKey(Split, on_delete=models.CASCADE, related_name="runs")

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, read_form
-from annotations.language.texts import LanguageError
-
-
-def read_or_none(text: str) -> Form | None:
-    """Return the form that a text writes; None where it is not a form."""
-    try:
-        return read_form(text)
-    except LanguageError:
-        return None
+from annotations.language.forms import (
+    SEQUENCE,
+    Application,
+    Form,
+    actions_of,
+    canonical_text,
+    read_or_none,
+)
 
 
 @lru_cache(maxsize=10_000)
@@ -28,13 +26,6 @@ def canonical_or_same(text: str) -> str:
     """Return the canonical text of a written form, or the text itself where it is not a form."""
     canonical_form = canonical(text)
     return text if canonical_form is None else canonical_form
-
-
-def actions_of(form: Form) -> tuple[Form, ...]:
-    """Return the actions of a sequence in order; the form itself where it is none."""
-    if isinstance(form, Application) and form.predicate == SEQUENCE:
-        return form.arguments
-    return (form,)
 
 
 def in_order(actions: Sequence[Form]) -> Form:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from parser_service.analysis.intervals import wilson_interval
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.outcomes import Counted, interval_of_outcomes
 from parser_service.models import Evaluation
 

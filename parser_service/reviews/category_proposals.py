@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 
 from annotations.background.progress import Progress
-from annotations.language.forms import read_form
+from annotations.language.forms import read_form, read_or_none
 from annotations.rows.synchronise import batches
-from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.category_proposals import Proposals, propose_category
 from parser_service.analysis.error_evidence import ErrorEvidence, RunEvidence
 from parser_service.analysis.structure import OF_DIFFERENCES

@@ -10,10 +10,9 @@ import numpy as np
 from django.db.models import Count
 
 from annotations.language.corpus import LabelledPair, check_words
-from annotations.language.forms import CLASS_TOKEN, read_form
+from annotations.language.forms import CLASS_TOKEN, read_form, read_or_none
 from annotations.models import Entity, Example, FindingStatus, Split, World
 from annotations.models.background import Status
-from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.error_evidence import ErrorEvidence, LabelDoubt, Neighbour, RunEvidence
 from parser_service.analysis.mining import mine_pairs, words_of
 from parser_service.models import TrainingRun

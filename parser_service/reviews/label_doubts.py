@@ -5,12 +5,11 @@ from __future__ import annotations
 from annotations.labelling import audit_findings
 from annotations.labelling.enqueuing import ItemSubject
 from annotations.labelling.sent_examples import send_examples, subject_of_example
-from annotations.language.forms import canonical_text
+from annotations.language.forms import canonical_text, read_or_none
 from annotations.language.texts import Refusal
 from annotations.models import Example, Paraphrase, SemanticTemplate, User, Utterance
 from annotations.models.corpus import ParaphraseStatus, UtteranceStatus
 from annotations.rows.occurrences import command_of_example
-from parser_service.analysis.answer_forms import read_or_none
 
 LONGEST_DOUBT = 250  # characters that say what is wrong with a label
 CHANGED = "The label of this example has changed since the split was frozen. Freeze a new split."

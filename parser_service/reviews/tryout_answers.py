@@ -131,7 +131,7 @@ def _is_wanted_elsewhere(job: Job) -> bool:
     """Return whether other work waits in a queue that the worker of the job serves."""
     worker = Worker.objects.filter(name=job.worker).first()
     queues = worker.queues if worker else [job.queue]
-    return any(kind.model.objects.queued().filter(queue__in=queues).exists() for kind in kinds())
+    return any(kind.objects.queued().filter(queue__in=queues).exists() for kind in kinds())
 
 
 class _Answering:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from annotations.language.corpus import Part
-from annotations.language.forms import CLASS_TOKEN, head_predicate, predicates
+from annotations.language.forms import CLASS_TOKEN, head_predicate, predicates, read_or_none
 from annotations.language.grounding import Anonymizer
 from annotations.language.texts import ARTICLES
 from annotations.rows.from_rows import ontology_of
-from parser_service.analysis.answer_forms import read_or_none
 from parser_service.analysis.mining import words_of
 from parser_service.analysis.word_use import SpokenFor, WordUse
 from parser_service.models import TrainingRun

@@ -7,7 +7,7 @@ training has.
 from __future__ import annotations
 
 from annotations import background
-from annotations.background import (
+from annotations.background import (  # noqa: F401  # offered here too
     LEASE,
     MOST_RESUMES,
     Fenced,
@@ -22,26 +22,6 @@ from annotations.background import (
 )
 from parser_service.models import Checkpoint, EpochMetric, TrainingRun
 from parser_service.parsers.interface import EpochReport
-
-__all__ = [
-    "LEASE",
-    "MOST_RESUMES",
-    "Fenced",
-    "acknowledge_cancel",
-    "cancel",
-    "claim",
-    "extend",
-    "fail",
-    "finish",
-    "hand_back",
-    "held",
-    "is_cancel_requested",
-    "log",
-    "record_checkpoint",
-    "record_epoch",
-    "record_progress",
-    "requeue_expired",
-]
 
 
 def claim(worker: str, queue: str, run: TrainingRun | None = None) -> TrainingRun | None:

@@ -52,9 +52,9 @@ def waiting_of(run: TrainingRun) -> ExpectedWait:
         Q(queued_at__lt=run.queued_at) | Q(queued_at=run.queued_at, id__lt=run.pk), status="queued"
     )
     ahead = {
-        kind.model: list(kind.model.objects.active().filter(before, queue=run.queue))
+        kind: list(kind.objects.active().filter(before, queue=run.queue))
         for kind in kinds()
-        if kind.model is not TrainingRun
+        if kind is not TrainingRun
     }
     runs = TrainingRun.objects.active().filter(before, queue=run.queue)
     workers = Worker.objects.alive_by_queue()[run.queue]

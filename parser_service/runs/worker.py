@@ -128,7 +128,7 @@ class WorkerTimer(bootsteps.StartStopStep):
             Worker.objects.filter(last_seen__lt=now - FORGET_AFTER).delete()
             if self._leases.is_trusted():
                 for kind in background.kinds():
-                    background.requeue_expired(kind.model)
+                    background.requeue_expired(kind)
             background.wake_for_forgotten(self._name, self._queues, waited)
             if orphans := remove_orphans():
                 logger.info("Removed the folders of deleted runs: %s", orphans)
@@ -148,7 +148,7 @@ class WorkerTimer(bootsteps.StartStopStep):
                 with suppress(ProcessLookupError):
                     os.kill(process, signal.SIGKILL)
             for kind in background.kinds():
-                for work in background.hand_back(self._name, kind.model):
+                for work in background.hand_back(self._name, kind):
                     logger.info("The queue has %s again.", work)
             Worker.objects.filter(name=self._name).delete()
         except Exception as error:

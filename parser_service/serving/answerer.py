@@ -16,7 +16,14 @@ from http import HTTPStatus
 from math import log, prod
 from typing import TYPE_CHECKING, Any, cast
 
-from annotations.language.forms import SEQUENCE, Application, Form, canonical_text, equivalent
+from annotations.language.forms import (
+    SEQUENCE,
+    Application,
+    Form,
+    actions_of,
+    canonical_text,
+    equivalent,
+)
 from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader, Slot
 from annotations.language.plans import (
     MOST_COMMANDS,
@@ -696,11 +703,7 @@ def _sequence(readings: Sequence[Reading[str]]) -> Candidate:
     steps: list[Form] = []
     values: list[str | None] = []
     for reading in readings:
-        form = _form(reading)
-        if isinstance(form, Application) and form.predicate == SEQUENCE:
-            steps += form.arguments
-        else:
-            steps.append(form)
+        steps += actions_of(_form(reading))
         values += [slot.filler for slot in reading.slots or () if slot.entity_class]
     return Candidate(canonical_text(Application(SEQUENCE, tuple(steps))), 0.0, values=tuple(values))
 

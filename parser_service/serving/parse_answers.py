@@ -14,7 +14,7 @@ from annotations.language.forms import (
     CLASS_TOKEN,
     Form,
     Unknown,
-    read_form,
+    read_or_none,
     to_corpus,
     to_reading,
 )
@@ -26,7 +26,6 @@ from annotations.language.grounding import (
     open_slots_as_json,
 )
 from annotations.language.plans import Lookup, TaskPlan, TaskValue, apply_recipes, make_plan, spoken
-from annotations.language.texts import LanguageError
 from annotations.language.world import Ontology, gloss
 from parser_service.parsers.interface import UNKNOWN, Candidate, ScoreKind
 from parser_service.serving.preparing import WorldLanguage
@@ -320,13 +319,7 @@ def questions_of(
         yield slot
 
 
-@lru_cache(maxsize=REMEMBERED_FORMS)
-def form_of(text: str) -> Form | None:
-    """Return the form, which parsers answer again and again; None for a text that is none."""
-    try:
-        return read_form(text)
-    except LanguageError:
-        return None
+form_of = lru_cache(maxsize=REMEMBERED_FORMS)(read_or_none)  # parsers answer a form again and again
 
 
 def unknown_tokens(utterance: str, ontology: Ontology) -> tuple[str, ...]:

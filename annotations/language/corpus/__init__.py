@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from annotations.language.corpus.agreement import Agreement, Distances, measure, wilson_interval
+from annotations.language.corpus.agreement import Agreement, Distances, measure
 from annotations.language.corpus.crowd import (
     Assignment,
     CrowdRewrite,
@@ -52,6 +52,7 @@ from annotations.language.corpus.names import (
 )
 from annotations.language.corpus.overlap import FormOverlap, Overlap, overlap_of, together
 from annotations.language.corpus.prompt_entities import entities_in, entities_of
+from annotations.language.corpus.proportions import Z_95, wilson_interval, wilson_intervals
 from annotations.language.corpus.rewording import Rewording
 from annotations.language.corpus.rewrite_checks import (
     Named,

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from annotations.language.corpus.proportions import wilson_interval
+
 SAMPLES = 1000
 SEED = 2019
-Z_95 = 1.959963984540054
 # Krippendorff, Content Analysis (2004), p. 241: from here on conclusions are reliable, or tentative.
 RELIABLE, TENTATIVE = 0.8, 2 / 3
 FEW_ITEMS = 30  # fewer get a word of caution
@@ -64,7 +65,7 @@ def exact_match(ratings: Ratings) -> Estimate:
     if not ratings.items:
         return _nothing()
     share = float(observed_agreement(ratings, _once(ratings))[0])
-    interval = wilson_interval(share, ratings.items)
+    interval = wilson_interval(share * ratings.items, ratings.items)
     noun = "item" if ratings.items == 1 else "items"
     meaning = f"Two people give the same form to {100 * share:.0f} % of {ratings.items:,} {noun}."
     return Estimate(share, interval, meaning + _caution(ratings))
@@ -146,15 +147,6 @@ def _bootstrap(
     values = coefficient(weights)
     low, high = np.percentile(values[~np.isnan(values)], [2.5, 97.5])
     return float(low), float(high)
-
-
-def wilson_interval(share: float, count: int) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a share of ``count`` trials, at least 1, as fractions of 1 (Journal of the
-    American Statistical Association 22, 1927)."""
-    square = Z_95**2 / count
-    middle = (share + square / 2) / (1 + square)
-    half = Z_95 * np.sqrt(share * (1 - share) / count + square / (4 * count)) / (1 + square)
-    return max(0.0, float(middle - half)), min(1.0, float(middle + half))
 
 
 @dataclass(frozen=True, slots=True)

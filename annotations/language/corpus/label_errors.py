@@ -21,14 +21,13 @@ from annotations.language.forms import (
     equivalent,
     flatten_conjunctions,
     predicates,
-    read_form,
+    read_or_none,
 )
 from annotations.language.texts import (
     CONTRASTS,
     NEAR_SYNONYMS,
     NEGATIONS,
     PREDICATE_WORDS,
-    LanguageError,
     Refusal,
 )
 
@@ -259,12 +258,7 @@ def _mean_the_same(first: str, second: str) -> bool:
     )
 
 
-@lru_cache(maxsize=4096)
-def _read(text: str) -> Form | None:
-    try:
-        return read_form(text)
-    except LanguageError:
-        return None
+_read = lru_cache(maxsize=4096)(read_or_none)
 
 
 def source_key(pair: LabelledPair) -> str:

@@ -29,6 +29,7 @@ from annotations.language.forms.logic import (
     TermSpan,
     plain_marks,
     read_form,
+    read_or_none,
     read_spans,
     read_template_form,
 )
@@ -78,6 +79,7 @@ from annotations.language.forms.terms import (
     Reference,
     Unknown,
     Variable,
+    actions_of,
     children,
     depth,
     free_variables,

@@ -82,6 +82,14 @@ def read_form(text: str, position: Position | None = None) -> Form:
     return _read_at(plain_marks(text), position, (Lambda, Application, Unknown))
 
 
+def read_or_none(text: str) -> Form | None:
+    """Return the form that a text writes; None where it is not a form."""
+    try:
+        return read_form(text)
+    except LanguageError:
+        return None
+
+
 def plain_marks(text: str) -> str:
     """Return a form with plain quotation marks and brackets for those of word processors, phones and East Asian fonts.
 

@@ -137,6 +137,13 @@ def head_predicate(form: Form) -> str:
     return next(iter(predicates(form)), "UNKNOWN")
 
 
+def actions_of(form: Form) -> tuple[Form, ...]:
+    """Return the actions of a sequence in order; the form itself where it is none."""
+    if isinstance(form, Application) and form.predicate == SEQUENCE:
+        return form.arguments
+    return (form,)
+
+
 def free_variables(form: Form) -> frozenset[int]:
     """Return the variables that no λ of the form binds; none for a form from ``read_form``."""
     if isinstance(form, Variable):

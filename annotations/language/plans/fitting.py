@@ -77,17 +77,11 @@ class Exchange:
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """``not_said``: slots of which the utterance names no entity. ``role_score`` is the log odds that the mentions have
-    the roles of their slots."""
+    """``not_said``: slots of which the utterance names no entity."""
 
     not_said: tuple[Slot, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     exchanged: tuple[Exchange, ...] = ()
-    role_score: float = 0.0
-
-    @property
-    def is_good(self) -> bool:
-        return not (self.not_said or self.left_out or self.exchanged)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +134,7 @@ def fit(
     filled = _filled(form, slots, heard, use.places(words))
     actions = [each for each in dict.fromkeys(predicates(form)) if use.is_action(each)]
     exchanged = tuple(_exchanges(filled, actions, use))
-    score = sum(max(use.score(place, each.role) for place in each.places) for each in filled)
-    return Fit(tuple(not_said), tuple(left_out), exchanged, score)
+    return Fit(tuple(not_said), tuple(left_out), exchanged)
 
 
 def exchange(

@@ -118,12 +118,11 @@ def content(value: TaskValue, around: tuple[str, ...] = ()) -> tuple[Any, ...]:
     inside = (*around, value.id)
     if value.of is not None:
         return ("attribute", value.attribute, content(value.of, inside))
-    conditions = (_condition(each, inside) for each in value.conditions)
+    conditions = (
+        (condition.predicate, *(content(each, inside) for each in condition.values))
+        for condition in value.conditions
+    )
     return ("description", tuple(sorted(conditions, key=repr)))
-
-
-def _condition(condition: Condition, inside: tuple[str, ...]) -> tuple[Any, ...]:
-    return (condition.predicate, *(content(each, inside) for each in condition.values))
 
 
 def with_results(

@@ -208,7 +208,7 @@ class WordUse:
             roles[token] = role = role_at(form, path)
             place = places[words.index(token)]
             assert place is not None
-            self._roles_of[_action_of(role)].add((role, class_of(token)))
+            self._roles_of[role.exact.split(".")[0]].add((role, class_of(token)))
             self._counts.add(place.features, role)
         said = [roles[word] for word in dict.fromkeys(words) if word in roles]
         for at, first in enumerate(said):
@@ -222,10 +222,6 @@ def role_at(form: Form, path: SlotPath) -> Role:
     if parts[0].startswith("sequence"):
         parts = parts[1:]
     return Role("/".join(parts), role.similar, role.exact)
-
-
-def _action_of(role: Role) -> str:
-    return role.exact.split(".")[0]
 
 
 def _meanings(

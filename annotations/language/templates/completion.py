@@ -15,6 +15,7 @@ from annotations.language.forms import (
     wildcard_names,
 )
 from annotations.language.grammar import Grammar
+from annotations.language.templates.candidates import shorten
 from annotations.language.templates.filling import bare
 from annotations.language.world import Predicate, PredicateKind
 
@@ -73,13 +74,13 @@ def completions(
         shown = " | ".join(map(print_sequence, alternatives[:SHOWN_ALTERNATIVES]))
         more = len(alternatives) - SHOWN_ALTERNATIVES
         info = f"{shown} and {more} more" if more > 0 else shown
-        of_nonterminals.append(Completion(f"${name}", _shorten(shown), info))
+        of_nonterminals.append(Completion(f"${name}", shorten(shown, LONGEST_DETAIL), info))
     of_predicates: list[Completion] = []
     for name in sorted(predicates):
         signatures = " or ".join(map(str, predicates[name].signatures))
         says = f": “{predicates[name].gloss}”" if predicates[name].gloss else ""
         info = f"{_KINDS[predicates[name].kind]}{says}. Takes {signatures}."
-        of_predicates.append(Completion(name, _shorten(signatures), info))
+        of_predicates.append(Completion(name, shorten(signatures, LONGEST_DETAIL), info))
     return Completions(
         tuple(of_nonterminals),
         tuple(_wildcard(each, classes) for each in sorted(plain, key=print_wildcard)),
@@ -107,7 +108,3 @@ def _wildcard(wildcard: Wildcard, classes: EntityClasses) -> Completion:
         kind = f" ({restriction})" if restriction not in ("", "room") else ""
         meaning = f"one of the {classes.plural(wildcard.entity_class)}{kind}"
     return Completion(print_wildcard(wildcard), meaning, " ".join(said))
-
-
-def _shorten(text: str) -> str:
-    return text if len(text) <= LONGEST_DETAIL else f"{text[: LONGEST_DETAIL - 1]}…"

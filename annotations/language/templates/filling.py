@@ -18,6 +18,7 @@ from annotations.language.forms import (
     Text,
     Unknown,
     Wildcard,
+    actions_of,
     print_symbol,
     read_wildcard,
 )
@@ -101,7 +102,7 @@ def _fill(form: Form, values: Mapping[str, Form | None], anonymize: bool) -> For
             given = [each for each in arguments if not _is_left_out(each, values)]
             parts = [_fill(argument, values, anonymize) for argument in given]
             if name == SEQUENCE:
-                parts = [part for argument in parts for part in _parts(argument)]
+                parts = [part for argument in parts for part in actions_of(argument)]
             return Application(name, tuple(parts))
         case Nonterminal(name):
             return values[name] or UNKNOWN
@@ -121,12 +122,6 @@ def _is_silent(body: Form, values: Mapping[str, Form | None]) -> bool:
     return isinstance(body, Application) and any(
         _is_left_out(each, values) for each in body.arguments
     )
-
-
-def _parts(form: Form) -> tuple[Form, ...]:
-    if isinstance(form, Application) and form.predicate == SEQUENCE:
-        return form.arguments
-    return (form,)
 
 
 def _argument(leaves: Filler | Composed) -> Form | None:

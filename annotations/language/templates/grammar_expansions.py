@@ -70,11 +70,11 @@ class GrammarExpansions:
 
     def size(self, template: SemanticTemplate) -> int:
         """Return an upper bound on the number of pairs of the template. Raises as ``TemplateExpander.size``."""
-        return self._sizes.get(_key(template), lambda: self.expander.size(template))
+        return self._sizes.get(template.texts, lambda: self.expander.size(template))
 
     def has(self, template: SemanticTemplate) -> bool:
         """Return whether the pairs of the template are here already."""
-        return _key(template) in self._kept
+        return template.texts in self._kept
 
     def pairs(self, template: SemanticTemplate, budget: Budget) -> Pairs:
         """Return the distinct commands of the template in grammar order, with their forms.
@@ -87,7 +87,7 @@ class GrammarExpansions:
 
     def made(self, template: SemanticTemplate, budget: Budget) -> TemplatePairs:
         """Return everything that the template makes. Raises as ``pairs``."""
-        return self._kept.get(_key(template), lambda: _collect(self.expander, template, budget))
+        return self._kept.get(template.texts, lambda: _collect(self.expander, template, budget))
 
     def derived(self, commands: Collection[str], budget: Budget) -> frozenset[str]:
         """Return those of ``commands`` that the grammar derives.
@@ -127,10 +127,6 @@ class GrammarExpansions:
     @cached_property
     def _recognizer(self) -> Recognizer:
         return Recognizer(self.grammar)
-
-
-def _key(template: SemanticTemplate) -> tuple[str, str]:
-    return template.pattern_text, template.form_text
 
 
 def _collect(

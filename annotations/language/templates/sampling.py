@@ -53,12 +53,11 @@ class Sample:
     """What ``sample`` gives.
 
     ``generated`` is as ``generate`` would have it, of the commands of the sample alone; it says of no template
-    that it is unmatched. ``note`` says how many there are. ``n_drawn`` derivations were looked at.
+    that it is unmatched. ``note`` says how many there are.
     """
 
     generated: Generated
     note: SampleNote
-    n_drawn: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -331,7 +330,7 @@ class _Drawing:
             tuple(self._language.left_out),
         )
         note = SampleNote(self._request, len(judged), self._language.size, is_all=not self._is_cut)
-        return Sample(generated, note, self._n_drawn)
+        return Sample(generated, note)
 
     def _is_full(self) -> bool:
         is_full = len(self._taken) >= self._request.size or self._n_drawn >= self._most_drawn

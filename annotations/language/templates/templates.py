@@ -66,6 +66,10 @@ class SemanticTemplate:
     nonterminal: str = ""
 
     @property
+    def texts(self) -> tuple[str, str]:
+        return self.pattern_text, self.form_text
+
+    @property
     def tracked(self) -> frozenset[str]:
         """The nonterminals that the form mentions, as arguments or as predicates."""
         return frozenset(slot.name for slot in self.slots() if isinstance(slot, Nonterminal))

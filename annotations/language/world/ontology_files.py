@@ -405,11 +405,10 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
     ]
     singulars = [f"{plural}, {singular}" for plural, singular in ontology.singulars.items()]
     head = ["name plural, name singular"] if singulars else []
+    changed = [each for each in ontology.classes if each != DEFAULT_CLASSES.get(each.token)]
     own = [each for each in ontology.entities if each.entity_class not in DEFAULT_CLASSES]
     files = {
-        CLASSES_FILE: _write_document(
-            "classes", map(_write_class, _changed_classes(ontology.classes))
-        ),
+        CLASSES_FILE: _write_document("classes", map(_write_class, changed)),
         "objects.xml": _write_nested(ontology, "categories", "category", "object"),
         "locations.xml": _write_nested(ontology, "rooms", "room", "location"),
         "names.xml": _write_document("names", names),
@@ -422,10 +421,6 @@ def write_ontology(ontology: Ontology) -> dict[str, str]:
         ),
     }
     return {name: text for name, text in files.items() if text}
-
-
-def _changed_classes(classes: EntityClasses) -> Iterator[EntityClass]:
-    return (each for each in classes if each != DEFAULT_CLASSES.get(each.token))
 
 
 def _write_class(entity_class: EntityClass) -> str:

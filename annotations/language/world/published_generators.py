@@ -225,17 +225,16 @@ class _Reading:
     def _hint_for(self, entity: Entity) -> str:
         match entity.entity_class:
             case "name":
-                return self._hint_for_name(entity)
+                return (
+                    "" if _ONE_NAME.fullmatch(entity.text) else _write_with(_ONE_NAME, entity.text)
+                )
             case "room":
                 return self._hint_for_room(entity)
             case "location":
                 return self._hint_for_location(entity)
             case "object":
                 return self._hint_for_object(entity)
-        return self._hint_for_class(entity)
-
-    def _hint_for_name(self, name: Entity) -> str:
-        return "" if _ONE_NAME.fullmatch(name.text) else _write_with(_ONE_NAME, name.text)
+        return _write_class(entity.text, entity.attribute("singular"))
 
     def _hint_for_room(self, room: Entity) -> str:
         if not _WORDS.fullmatch(room.text):
@@ -269,9 +268,6 @@ class _Reading:
         if item.attribute("category") not in self._classes:
             return f"{_write_class(item.attribute('category') or '')} above it"
         return ""
-
-    def _hint_for_class(self, category: Entity) -> str:
-        return _write_class(category.text, category.attribute("singular"))
 
     def _cells(self, line: int) -> list[str]:
         """Return the first texts between the strokes of a line; the last is what stands behind these strokes."""

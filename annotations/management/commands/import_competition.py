@@ -9,15 +9,10 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.exchange.competition_import import import_competition
-from annotations.management.base import (
-    RefusedReport,
-    ReportingCommand,
-    add_brings_back,
-    add_encoding,
-)
+from annotations.management.base import ImportCommand, RefusedReport
 
 
-class Command(ReportingCommand):
+class Command(ImportCommand):
     help = (
         "Imports names, rooms, locations and objects from the Markdown folder of a competition. What the world has of "
         "these is replaced; grammar and templates stay. Says which rows the published generators lose, and what "
@@ -27,15 +22,12 @@ class Command(ReportingCommand):
     audited = "import files"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
-        parser.add_argument("--world", required=True, help="made where there is none")
+        super().add_options(parser)
         parser.add_argument(
             "--arena",
             default="",
             help="whose files are taken where the folder has those of several",
         )
-        add_brings_back(parser)
-        add_encoding(parser)
 
     def report(
         self,
@@ -57,6 +49,3 @@ class Command(ReportingCommand):
         if report.is_refused:
             raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()
-
-    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
-        return str(options["folder"])

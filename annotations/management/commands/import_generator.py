@@ -9,18 +9,12 @@ from typing import Any
 from django.core.management.base import CommandParser
 
 from annotations.exchange.generator_import import import_generator
-from annotations.management.base import (
-    RefusedReport,
-    ReportingCommand,
-    add_brings_back,
-    add_encoding,
-    say_left_out,
-)
+from annotations.management.base import ImportCommand, RefusedReport
 
 MOST_LISTED = 40
 
 
-class Command(ReportingCommand):
+class Command(ImportCommand):
     help = (
         "Imports a folder of grammars, ontology files and semantic templates into a world. "
         "Refused whole, with exit status 1, where a file has an error."
@@ -29,15 +23,12 @@ class Command(ReportingCommand):
     audited = "import files"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
-        parser.add_argument("--world", required=True, help="made where there is none")
+        super().add_options(parser)
         parser.add_argument(
             "--remove-missing",
             action="store_true",
             help="remove what the world has and the files do not; refused without it",
         )
-        add_brings_back(parser)
-        add_encoding(parser)
 
     def report(
         self,
@@ -66,9 +57,3 @@ class Command(ReportingCommand):
         if report.is_refused:
             raise RefusedReport.because(report.errors, report.as_json(), folder)
         return report.as_json()
-
-    def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
-        return str(options["folder"])
-
-    def describe(self, report: Mapping[str, Any]) -> str:
-        return "\n".join([super().describe(report), *say_left_out(report)])

@@ -10,18 +10,12 @@ from django.core.management.base import CommandParser
 
 from annotations.exchange.pair_files import Notation
 from annotations.exchange.pair_import import import_pairs
-from annotations.management.base import (
-    RefusedReport,
-    ReportingCommand,
-    add_brings_back,
-    add_encoding,
-    say_left_out,
-)
+from annotations.management.base import ImportCommand, RefusedReport
 
 MOST_BYTES = 2_000_000_000  # of a file; takes some six times as much memory
 
 
-class Command(ReportingCommand):
+class Command(ImportCommand):
     help = (
         "Imports the splits gen, para, gen_logical and para_logical of a folder, as the splits "
         "NAME-command and NAME-logical_form, and the paraphrases of paraphrasings.txt."
@@ -30,8 +24,7 @@ class Command(ReportingCommand):
     audited = "import pairs"
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("folder", type=Path, help="or an archive: .zip, .tar, .tar.gz")
-        parser.add_argument("--world", required=True, help="made where there is none")
+        super().add_options(parser)
         parser.add_argument("--name", required=True, help="what the splits are called")
         parser.add_argument(
             "--notation",
@@ -39,8 +32,6 @@ class Command(ReportingCommand):
             default=Notation.OURS,
             help="lambda: train, dev and test (.txt, .tsv) of another λ-corpus, read as far as possible",
         )
-        add_brings_back(parser)
-        add_encoding(parser)
 
     def report(
         self,
@@ -66,6 +57,3 @@ class Command(ReportingCommand):
 
     def audit_subject(self, report: Mapping[str, Any], options: Mapping[str, Any]) -> str:
         return f"{options['name']}, from {options['folder']}"
-
-    def describe(self, report: Mapping[str, Any]) -> str:
-        return "\n".join([super().describe(report), *say_left_out(report)])

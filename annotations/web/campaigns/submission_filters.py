@@ -16,8 +16,8 @@ from annotations.models.campaigns import (
     contributor_kind_choices,
     submission_status_choices,
 )
-from annotations.people.access import WorldRequest
 from annotations.showing.filtering import Choices, Key, PageFilters, Search
+from annotations.web.campaigns.campaign_forms import campaign_choices
 
 # What a flag is called on pages.
 FLAG_LABELS = {
@@ -38,12 +38,6 @@ NO_FLAG = "none"
 
 def flag_choices() -> Choices:
     return [(NO_FLAG, "no flag"), *((str(code), label) for code, label in FLAG_LABELS.items())]
-
-
-def campaign_choices(request: WorldRequest) -> Choices:
-    """Return the campaigns of the world that the page is about."""
-    rows = request.world.campaigns.values_list("pk", "name")
-    return [(str(pk), name) for pk, name in rows]
 
 
 class FlagFilter(django_filters.ChoiceFilter):

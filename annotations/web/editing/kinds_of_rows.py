@@ -7,8 +7,7 @@ from typing import Any
 
 from django.http import Http404
 
-from annotations.editing.class_deletion import delete_class
-from annotations.editing.recipe_deletion import delete_primitive
+from annotations.editing.deletion_of_unused import delete_class, delete_primitive
 from annotations.labelling.utterance_deletion import delete_utterance
 from annotations.labelling.utterance_deletion import restore as restore_with_answers
 from annotations.models import Editable, EntityClass, Primitive, User, Utterance

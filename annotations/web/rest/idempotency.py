@@ -82,12 +82,6 @@ def fingerprint_of(request: ApiRequest) -> str:
     return digest.hexdigest()
 
 
-def _items(data: Any) -> list[tuple[str, Any]]:
-    if hasattr(data, "lists"):
-        return list(data.lists())
-    return list(data.items()) if isinstance(data, dict) else [("", data)]
-
-
 def _replay(kept: dict[str, Any] | None, sent: str) -> Response:
     if kept is None or ("status" not in kept and kept["sent"] == sent):
         said = "The first request with this key is still being worked on. Ask again later."

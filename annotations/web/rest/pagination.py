@@ -12,7 +12,7 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.utils.urls import replace_query_param
 
-from annotations.showing.paging import page_of, read_cursor
+from annotations.showing.paging import opposite, page_of, read_cursor
 
 PAGE_SIZE, MOST_ROWS = 100, 1000
 PLACES = ("after", "before")
@@ -57,9 +57,7 @@ class Keyset(BasePagination):
         field = sorts.get(asked.removeprefix("-"))
         if field is None:
             raise ValidationError({"sort": [f"Sort by one of: {', '.join(sorts)}."]})
-        if not asked.startswith("-"):
-            return field
-        return field.removeprefix("-") if field.startswith("-") else f"-{field}"
+        return opposite(field) if asked.startswith("-") else field
 
     def _cursor(self, request: Request, rows: QuerySet[Any], order: str, name: str) -> str:
         """Return the cursor that was sent. Raises ValidationError for one of another order."""

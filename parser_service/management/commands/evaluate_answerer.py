@@ -15,7 +15,6 @@ from parser_service.results.answerer_figures import evaluate_answerer
 from parser_service.results.answerer_rows import as_row, bins_of, reliability_of
 from parser_service.results.measuring_job import answerer_of, usual_split
 
-_BEAM = 5
 _COLUMNS = ("correct", "same_plan", "acted", "wrong_acts", "confirmed", "asked", "refused")
 
 

@@ -9,7 +9,7 @@ from random import Random
 from typing import Any, Self
 
 from annotations.language.corpus import Rewording
-from annotations.language.forms import DEFAULT_CLASSES, EntityClasses
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses, read_or_none
 from annotations.language.grounding import Anonymizer
 from annotations.language.plans import other_requests
 from annotations.language.world import Ontology, Predicate, gloss, infer_signatures, pattern_of_name
@@ -17,7 +17,6 @@ from parser_service.parsers.conditions import GENERATED
 from parser_service.parsers.generation import generate_candidates
 from parser_service.parsers.interface import REFUSAL, TRAINING, Check, Knowledge, Pair, keep_going
 from parser_service.parsers.spreading import spread
-from parser_service.parsers.written_forms import read_or_none
 
 MOST_EXAMPLES = 20_000
 LEAST_PARAPHRASES = 4  # of a form; fewer do not show how else people say it

@@ -11,13 +11,12 @@ from re import Match
 import torch
 from torch import Tensor
 
-from annotations.language.forms import CLASS_TOKEN, Constant, walk
+from annotations.language.forms import CLASS_TOKEN, Constant, read_or_none, walk
 from annotations.language.grounding import QUESTION_WORD, Anonymizer
 from annotations.language.plans import says_number
 from annotations.language.texts import ANY_OBJECT, OPEN_CATEGORIES
 from annotations.language.world import Ontology
 from parser_service.parsers.remembering import remembered
-from parser_service.parsers.written_forms import read_or_none
 
 _MOST_READINGS = 8
 # These words mean a category that is left open (``{category?}`` says "objects") or things of no

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from json import JSONDecoder
 from typing import Any, Self
 
-from annotations.language.forms import Form, canonical_text
+from annotations.language.forms import Form, actions_of, canonical_text, read_or_none
 from annotations.language.world import Predicate, gloss, print_signatures
 from parser_service.parsers.llm.protocol import Message
-from parser_service.parsers.written_forms import actions_of, read_or_none, written_actions
+from parser_service.parsers.written_forms import written_actions
 
 UNKNOWN = "UNKNOWN"
 # The names under which a listed form is answered, and the listed actions of a composed one.

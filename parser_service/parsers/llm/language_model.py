@@ -11,7 +11,7 @@ from typing import Self
 import numpy as np
 
 from annotations.language.forms import UNKNOWN as UNKNOWN_FORM
-from annotations.language.forms import Form, Unknown, canonical_text
+from annotations.language.forms import Form, Unknown, canonical_text, read_or_none
 from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import (
@@ -38,12 +38,7 @@ from parser_service.parsers.llm.mending import Mended, Mender, tokens_in, withou
 from parser_service.parsers.llm.protocol import MOST_NAME, Question
 from parser_service.parsers.nearest_pairs import PairKeeper, WordOverlap
 from parser_service.parsers.server_address import problem_of, server
-from parser_service.parsers.written_forms import (
-    canonical,
-    in_order,
-    read_or_none,
-    written_actions,
-)
+from parser_service.parsers.written_forms import canonical, in_order, written_actions
 
 # The origins of a form that no training pair has: its actions have been seen, or it is the model's own.
 COMPOSED, WRITTEN = "composed", "written"

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
@@ -13,6 +10,7 @@ from django.utils.http import url_has_allowed_host_and_scheme
 from annotations.language.texts import LanguageError
 from annotations.models import Duty, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.web.forms import sentence_of
 from parser_service.models import Slice
 from parser_service.results.saving import delete_slice, rename_slice, save_slice
 from parser_service.results.selecting import describe_query
@@ -61,10 +59,3 @@ def slice_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     delete_slice(saved)
     request.session[DELETED] = {"name": saved.name, "query": saved.query}
     return redirect("slices", world=world.name)
-
-
-def sentence_of(error: LanguageError) -> str:
-    """Return an error as a sentence for a page, with its hint."""
-    parts: Sequence[Any] = [part for part in (error.message, error.hint) if part]
-    text = "; ".join(parts)
-    return f"{text[:1].upper()}{text[1:]}."

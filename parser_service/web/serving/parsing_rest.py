@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Any
 
@@ -14,8 +14,6 @@ from rest_framework import serializers
 from rest_framework.exceptions import ValidationError
 from rest_framework.negotiation import DefaultContentNegotiation
 from rest_framework.parsers import BaseParser
-from rest_framework.renderers import BaseRenderer
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -24,6 +22,7 @@ from annotations.models import Duty, Job, Scope, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.parsing import BoundedJSONParser
 from annotations.web.rest.permissions import ApiRequest, HasDuty
 from annotations.web.rest.routes import WorldRoute
@@ -43,11 +42,7 @@ MOST_KEY = 2**63 - 1
 class JsonLinesToo(DefaultContentNegotiation):
     """Takes any header ``Accept``: what was sent decides whether JSON or JSON lines are answered."""
 
-    def select_renderer(
-        self, request: Request, renderers: Iterable[BaseRenderer], format_suffix: str | None = None
-    ) -> tuple[BaseRenderer, str]:
-        renderer = next(iter(renderers))
-        return renderer, renderer.media_type
+    select_renderer = AnyType.select_renderer
 
 
 class JsonLinesParser(BaseParser):

@@ -6,9 +6,8 @@ import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 
 from annotations import background
-from annotations.background.carrying_out_jobs import carry_out
+from annotations.background.carrying_out_jobs import carry_out, verb_of
 from annotations.background.job_files import folder_of, jobs_folder
-from annotations.background.job_kinds import verb_of
 from annotations.background.requesting import answer_job, cancel_job, request_job
 from annotations.background.sweeping import sweep
 from annotations.background.watching import JobProgress

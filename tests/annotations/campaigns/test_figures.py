@@ -13,7 +13,7 @@ from annotations.campaigns.paraphrase_figures import figures_of, form_counts
 from annotations.campaigns.tasks import begin
 from annotations.exchange.pair_import import import_pairs
 from annotations.language.corpus import distance
-from annotations.language.corpus.agreement import wilson_interval
+from annotations.language.corpus.proportions import wilson_interval
 from annotations.models import LogicalForm, Paraphrase
 from annotations.models.campaigns import Contributor, ContributorKind
 from tests.launched_campaigns import small_campaign
@@ -137,7 +137,7 @@ def test_contributors_have_pace_acceptance_and_flags(world, campaign, admin):
     assert quick.flagged == 2
     assert (quick.acceptance, quick.interval) == (None, None)
     assert (slow.accepted, slow.decided, slow.acceptance) == (1, 2, 0.5)
-    assert slow.interval == wilson_interval(0.5, 2)
+    assert slow.interval == wilson_interval(1, 2)
     assert slow.pace.median == median((30, 50))
     assert (slow.pace.lower, slow.pace.upper) == (35, 45)
     assert contributors_of(world, small_campaign(world, name="second")) == []

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from django.template import engines
 
-SOURCE = """{% load presentation %}{% page_head title=title aside="run 3" actions="_mark.html" %}
+SOURCE = """{% load presentation %}{% page_head title=title aside="run 3" %}
+  {% actions %}{% include "_mark.html" %}{% end_actions %}
   About {{ name }}, <a href="#x">here</a>.
 {% end_page_head %}"""
 

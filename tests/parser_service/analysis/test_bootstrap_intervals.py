@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from parser_service.analysis.intervals import ratio_interval, wilson_interval
+from annotations.language.corpus import wilson_interval
+from parser_service.analysis.intervals import ratio_interval
 
 shares = st.lists(
     st.tuples(st.integers(0, 3), st.integers(3, 6)).map(lambda pair: (pair[0] / 3, pair[1])),

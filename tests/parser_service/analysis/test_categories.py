@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 
 from annotations.language.forms import canonical_text, read_form
-from parser_service.analysis.category_proposals import propose_categories, propose_category
+from parser_service.analysis.category_proposals import propose_category
 from parser_service.analysis.error_categories import DESCRIPTIONS, ErrorCategory
 from parser_service.analysis.error_evidence import ErrorEvidence, LabelDoubt, Neighbour, RunEvidence
 from tests.annotations.language.random_forms import forms
@@ -203,15 +203,6 @@ def test_any_wrong_answer_gets_one_category_with_a_reason_the_same_each_time(gol
     assert all(each.reason.endswith(".") for each in ranked)
     assert len({each.category for each in ranked}) == len(ranked)
     assert proposals == propose_category(gold, predicted)
-
-
-def test_many_answers_get_the_proposals_of_each():
-    gold = [canonical_text(GOLD)] * 4
-    answers = [canonical_text(GO), "( go", canonical_text(GOLD), canonical_text(GO)]
-    run = RunEvidence(attractors=frozenset({canonical_text(GO)}))
-    proposals = propose_categories(gold, answers, run)
-    drastic = propose_category(GOLD, GO, run)
-    assert proposals == [drastic, propose_category(GOLD, None, run), None, drastic]
 
 
 def test_every_category_is_described():

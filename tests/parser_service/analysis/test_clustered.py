@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.clustered import Clustered, compare, figures_of, interval_of
-from parser_service.analysis.intervals import wilson_interval
 
 tally = st.dictionaries(
     st.text("abcdefgh", min_size=1, max_size=2),

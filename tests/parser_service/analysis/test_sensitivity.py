@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from annotations.language.corpus import wilson_interval
 from annotations.language.forms import FormDistances, equivalent, read_form
-from parser_service.analysis.intervals import wilson_interval
 from parser_service.analysis.sensitivity import (
     ALL_KINDS,
     EditAnswers,

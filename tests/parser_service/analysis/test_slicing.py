@@ -7,22 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from annotations.language.corpus import wilson_interval
 from parser_service.analysis.clustered import Clustered, interval_of
-from parser_service.analysis.intervals import SAMPLES, wilson_interval
+from parser_service.analysis.encoded_labels import encode
+from parser_service.analysis.intervals import SAMPLES
 from parser_service.analysis.slicing import (
     NO_FORM,
-    accuracy_by,
+    accuracy_of_labels,
     accuracy_where,
-    are_seen,
     bin_names,
-    form_depths,
     head_predicates,
-    length_bins,
 )
 
 examples = st.lists(
     st.tuples(st.sampled_from("abc"), st.booleans(), st.booleans(), st.integers(0, 5)), min_size=1
 )
+EVERY = np.ones((1, 3), dtype=bool)
 GO, BRING = '(go "<room>")', '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
 
 
@@ -31,7 +31,7 @@ def test_slices_are_counted_like_one_at_a_time(rows):
     labels = [label for label, *_ in rows]
     clusters = np.array([cluster for *_, cluster in rows])
     correct = np.array([[row[1] for row in rows], [row[2] for row in rows]])
-    slices = accuracy_by(correct, labels, clusters, values="abc")
+    slices = accuracy_of_labels(correct, encode(labels, "abc"), clusters)
     assert slices.values == ("a", "b", "c")
     for place, value in enumerate(slices.values):
         mask = np.array([label == value for label in labels])
@@ -87,39 +87,27 @@ def test_the_best_of_a_slice_is_better_beyond_chance():
     random = np.random.default_rng(6)
     correct = random.random((3, 400)) < [[0.9], [0.6], [0.55]]
     clusters, labels = np.arange(400) // 2, ["a"] * 390 + ["b"] * 10
-    slices = accuracy_by(correct, labels, clusters)
+    slices = accuracy_of_labels(correct, encode(labels), clusters)
     assert slices.is_best.tolist() == [[True, False], [False, False], [False, False]]
-    alone = accuracy_by(correct[:1], labels, clusters)
+    alone = accuracy_of_labels(correct[:1], encode(labels), clusters)
     assert not alone.is_best.any()
 
 
 def test_slices_that_are_not_named_follow_in_order_of_appearance():
-    slices = accuracy_by(np.ones((1, 3), dtype=bool), ["z", "a", "z"], np.arange(3), values=["m"])
+    slices = accuracy_of_labels(EVERY, encode(["z", "a", "z"], ["m"]), np.arange(3))
     assert slices.values == ("m", "z", "a")
     assert slices.counts.tolist() == [0, 2, 1]
 
 
 def test_labels_have_to_fit_the_examples():
     with pytest.raises(ValueError, match=r"2 .* 3 "):
-        accuracy_by(np.ones((1, 3), dtype=bool), ["a", "b"], np.arange(3))
+        accuracy_of_labels(EVERY, encode(["a", "b"]), np.arange(3))
 
 
-def test_forms_are_sliced_by_head_predicate_depth_and_whether_training_had_them():
+def test_forms_are_sliced_by_head_predicate():
     forms = [GO, BRING, "UNKNOWN", "( go", GO]
     assert head_predicates(forms) == ["go", "bring", "UNKNOWN", NO_FORM, "go"]
-    assert form_depths(forms) == [1, 3, 0, NO_FORM, 1]
-    assert are_seen(forms, [GO]).tolist() == [True, False, False, False, True]
 
 
-def test_lengths_fall_into_bins():
-    texts = ["", "go", "a b c d", "a b c d e", " ".join("x" * 8), " ".join("x" * 9), "w " * 40]
-    assert length_bins(texts) == [
-        "1–4 words",
-        "1–4 words",
-        "1–4 words",
-        "5–8 words",
-        "5–8 words",
-        "9–12 words",
-        "17 words or more",
-    ]
+def test_bins_have_names():
     assert bin_names((1, 3)) == ("1–2 words", "3 words or more")

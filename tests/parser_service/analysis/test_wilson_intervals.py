@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from parser_service.analysis.intervals import wilson_interval, wilson_intervals
+from annotations.language.corpus import wilson_interval, wilson_intervals
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from annotations.language.forms import read_form
 from annotations.language.grounding import Anonymizer, are_alike, deanonymize, with_values
 from annotations.language.grounding.deanonymizer import slots_of
-from annotations.language.plans import Exchange, Left, best_fitting, exchange, fit
+from annotations.language.plans import Exchange, Fit, Left, best_fitting, exchange, fit
 from tests.annotations.language.plans.wordings import FORMS, ROLES
 from tests.annotations.language.plans.worlds import shipped
 
@@ -153,7 +153,7 @@ HONEY = [
 @pytest.mark.parametrize(("said", "right", "wrong"), HONEY)
 def test_what_nobody_said_and_what_is_left_out_counts(said, right, wrong):
     world = shipped("household")
-    assert not right or world.fit(said, right).is_good  # the world has no form for some
+    assert not right or world.fit(said, right) == Fit()  # the world has no form for some
     bad = world.fit(said, wrong)
     assert bad.not_said or bad.left_out
 

@@ -7,8 +7,9 @@ import re
 import numpy as np
 import pytest
 
+from parser_service.analysis.encoded_labels import encode
 from parser_service.analysis.outcomes import encode_clusters
-from parser_service.analysis.slicing import accuracy_by
+from parser_service.analysis.slicing import accuracy_of_labels
 from parser_service.models import ErrorCategory, Prediction, Review, RunAnalysis
 from parser_service.results.accuracy_cells import PLANS_NOT_COMPARED
 from parser_service.results.measures import Measure, interval_of, share_of
@@ -114,7 +115,7 @@ def test_slices_are_those_of_the_analysis(report, run):
     rows = run.predictions.best().filter(example__part="validation").select_related("example")
     correct = np.array([[row.is_exact_match for row in rows]])
     clusters = encode_clusters([cluster_of(row.example, run.split.criterion) for row in rows])
-    expected = accuracy_by(correct, [row.example.source for row in rows], clusters)
+    expected = accuracy_of_labels(correct, encode([row.example.source for row in rows]), clusters)
     document = parse(report())
     titles = texts(document, "#slices h3")
     shown = {row[0]: row[1:] for row in table(document, "slices", titles.index("Source"))}

@@ -11,7 +11,7 @@ from parser_service.analysis.comparing import compare_runs
 from parser_service.analysis.confusions import confuse_heads
 from parser_service.analysis.encoded_labels import encode
 from parser_service.analysis.outcomes import encode_clusters
-from parser_service.analysis.slicing import accuracy_by, form_depths, head_predicates, length_bins
+from parser_service.analysis.slicing import accuracy_of_labels, bin_names, head_predicates
 from parser_service.models import ErrorCategory, Prediction, Review, Slice
 from parser_service.results.saving import save_slice
 from parser_service.runs.split_pairs import cluster_of
@@ -117,17 +117,23 @@ def test_a_measure_that_is_misspelled_is_exact_match(sample, second, anna):
     assert compare(anna, sample.run, second, measure="best").context["measure"] == "exact"
 
 
+def length_bin(text: str) -> str:
+    return bin_names()[min((len(text.split()) - 1) // 4, 4)]
+
+
 def test_slices_are_those_of_the_core_and_lead_to_their_answers(sample, second, anna):
     context = compare(anna, sample.run, second).context
     tables = {table.name: table for table in context["breakdowns"]}
     examples = [each.example for each in sample.run.predictions.order_by("example_id")]
     labels = {
-        "words": length_bins([each.utterance for each in examples]),
+        "words": [length_bin(each.utterance) for each in examples],
         "source": [each.source for each in examples],
         "head": [each.logical_form.split()[1] for each in examples],
     }
     for name, values in labels.items():
-        core = accuracy_by(outcomes(sample.run, second), values, clusters_of(sample.run))
+        core = accuracy_of_labels(
+            outcomes(sample.run, second), encode(values), clusters_of(sample.run)
+        )
         by_title = {row.title: row for row in tables[name].rows}
         for place, value in enumerate(core.values):
             row = by_title[value]
@@ -140,7 +146,7 @@ def test_slices_are_those_of_the_core_and_lead_to_their_answers(sample, second, 
                 )
                 assert total_behind(anna, cell.url) == (cell.count - cell.correct or cell.count)
     assert "depth" not in tables, "all forms are equally deep"
-    assert set(form_depths([each.logical_form for each in examples])) == {3}
+    assert {each.depth for each in examples} == {3}
 
 
 def test_confusions_are_those_of_the_core_and_lead_to_their_answers(sample, second, anna):
