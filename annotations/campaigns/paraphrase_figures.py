@@ -6,9 +6,9 @@ People and language models are told apart. Everything is counted in one pass ove
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from statistics import fmean
+from typing import Any
 
 from django.db.models import Count
 
@@ -131,42 +131,36 @@ class FormCount:
         return self.people + self.models
 
 
-_Said = tuple[str, int, float]  # the utterance, with its distances
-
-
 def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigures:
     """Return the figures of the accepted paraphrases of ``world``, or of those that came by ``campaign``.
 
     A form is short where it has fewer than the target of the campaign, or ``TARGET_PER_FORM``, counting
     the paraphrases of the world.
     """
+    import pandas
+
     accepted = world.paraphrases.accepted().order_by("position")
     chosen = accepted if campaign is None else accepted.filter(contributor__campaign=campaign)
     columns = ("utterance", "edit_distance", "jaccard_distance", "logical_form")
-    by: dict[bool, list[_Said]] = {False: [], True: []}
-    of_form: dict[str, Counter[bool]] = defaultdict(Counter)
-    for said, edits, jaccard, form, kind in chosen.values_list(*columns, "contributor__kind"):
-        is_by_model = kind == ContributorKind.MODEL
-        by[is_by_model].append((said, edits, jaccard))
-        of_form[form][is_by_model] += 1
-    forms = form_counts(world, campaign)
-    category_of = {each.form: each.task_category for each in forms}
-    in_category: dict[str, Counter[bool]] = defaultdict(Counter)
-    for form, counts in of_form.items():
-        in_category[category_of.get(form, "")] += counts
-    of_category = Counter(each.task_category for each in forms)
-    short = Counter(each.task_category for each in forms if each.lacks)
-    sample = min(SAMPLE, *map(len, by.values()))
+    rows = chosen.values_list(*columns, "contributor__kind")
+    said = pandas.DataFrame(rows, columns=[*columns, "kind"])
+    said["models"] = said.kind == ContributorKind.MODEL
+    said["people"] = ~said.models
+    people, models = said[said.people], said[said.models]
+    sample = min(SAMPLE, len(people), len(models))
+    counted = form_counts(world, campaign)
+    category_of = {each.form: each.task_category for each in counted}
+    forms = pandas.DataFrame(
+        [(each.task_category, 1, each.lacks > 0) for each in counted],
+        columns=["task_category", "forms", "short"],
+    )
+    said["task_category"] = [category_of.get(form, "") for form in said.logical_form]
+    categories = pandas.concat([forms, said]).groupby("task_category")
+    counts = categories[["forms", "short", "people", "models"]].sum().astype(int)
     return ParaphraseFigures(
-        people=_summary(by[False], sample),
-        models=_summary(by[True], sample),
-        categories=tuple(
-            CategoryCount(
-                *(name, of_category[name], short[name]),
-                *(in_category[name][False], in_category[name][True]),
-            )
-            for name in sorted({*of_category, *in_category})
-        ),
+        people=_summary(people, sample),
+        models=_summary(models, sample),
+        categories=tuple(CategoryCount(*row) for row in counts.itertuples()),
         target=target_of(campaign),
         sample=sample,
     )
@@ -208,15 +202,15 @@ def form_counts(
     return sorted(rows, key=lambda row: (-row.lacks, row.task_category, row.form))
 
 
-def _summary(rows: Sequence[_Said], sample: int) -> ParaphrasesBy:
-    words = [folded_words(said) for said, _, _ in rows]
+def _summary(rows: Any, sample: int) -> ParaphrasesBy:
+    words = [folded_words(said) for said in rows.utterance]
     growth = vocabulary_growth(words)
     return ParaphrasesBy(
         count=len(rows),
-        edits=fmean(edits for _, edits, _ in rows) if rows else None,
-        jaccard=fmean(jaccard for _, _, jaccard in rows) if rows else None,
-        edit_counts=EDIT_BINS.counts(edits for _, edits, _ in rows),
-        jaccard_counts=JACCARD_BINS.counts(jaccard for _, _, jaccard in rows),
+        edits=rows.edit_distance.mean() if len(rows) else None,
+        jaccard=rows.jaccard_distance.mean() if len(rows) else None,
+        edit_counts=EDIT_BINS.counts(rows.edit_distance),
+        jaccard_counts=JACCARD_BINS.counts(rows.jaccard_distance),
         words=growth[-1] if growth else 0,
         sample_words=expected_vocabulary(words, sample) if sample else None,
         growth=tuple(growth),

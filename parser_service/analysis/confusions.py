@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -63,24 +64,16 @@ class SlotConfusion:
 
 def confuse_heads(gold: EncodedLabels[str], predicted: EncodedLabels[str]) -> HeadConfusion:
     """Count head predicates of labels against those of answers, [pairs] each."""
-    first, second, pair_counts = distinct_pairs(gold.codes, predicted.codes)
-    totals = {
-        (gold.values[left], predicted.values[right]): count
-        for left, right, count in zip(
-            first.tolist(), second.tolist(), pair_counts.tolist(), strict=True
-        )
-    }
-    labels: Counter[str] = Counter()
-    answers: Counter[str] = Counter()
-    for (said, answered), count in totals.items():
-        labels[said] += count
-        answers[answered] += count
-    heads = tuple(dict.fromkeys((*_by_frequency(labels), *_by_frequency(answers))))
-    places = {head: place for place, head in enumerate(heads)}
-    counts = np.zeros((len(heads), len(heads)), dtype=np.int64)
-    for (said, answered), count in totals.items():
-        counts[places[said], places[answered]] = count
-    return HeadConfusion(heads, counts)
+    import pandas
+
+    first, second, counts = distinct_pairs(gold.codes, predicted.codes)
+    said = [gold.values[code] for code in first]
+    answered = [predicted.values[code] for code in second]
+    pairs = pandas.DataFrame({"said": said, "answered": answered, "count": counts})
+    table = pairs.pivot_table("count", "said", "answered", "sum", fill_value=0)
+    heads = list(dict.fromkeys(_by_frequency(table.sum(axis=1)) + _by_frequency(table.sum())))
+    square = table.reindex(index=heads, columns=heads, fill_value=0)
+    return HeadConfusion(tuple(heads), square.to_numpy(np.int64))
 
 
 def confuse_slots(gold: Sequence[str], predicted: Sequence[str]) -> tuple[SlotConfusion, ...]:
@@ -112,8 +105,8 @@ def confuse_slots(gold: Sequence[str], predicted: Sequence[str]) -> tuple[SlotCo
     return tuple(sorted(rows, key=lambda row: (not row.is_error, -row.count)))
 
 
-def _by_frequency(counts: Counter[str]) -> list[str]:
-    return sorted(counts, key=lambda name: (-counts[name], name))
+def _by_frequency(counts: Any) -> list[str]:
+    return sorted(counts.index, key=lambda name: (-counts[name], name))
 
 
 def _slots(node: Difference) -> Iterator[tuple[str, int, str, str]]:
