@@ -121,9 +121,7 @@ urlpatterns = [
     path("slices/", slice_pages.slices, name="slices"),
     path("slices/<int:pk>/rename/", slice_pages.slice_rename, name="slice_rename"),
     path("slices/<int:pk>/delete/", slice_pages.slice_delete, name="slice_delete"),
-    path("results.csv", result_pages.results_csv, name="results_csv"),
-    path("results.tex", result_pages.results_latex, name="results_latex"),
-    path("results.json", result_pages.results_json, name="results_json"),
+    path("results.<slug:as_>", result_pages.results_download, name="results_download"),
     path("results/curves/", learning_curve_pages.learning_curves_page, name="learning_curves"),
     path(
         "results/curves/table/",

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from django.db.models import QuerySet
 
 from annotations.campaigns.tasks import Dealer
-from annotations.exchange.split_export import csv_lines
+from annotations.exchange.tables import TableFormat, table_pieces, text_pieces
 from annotations.language.corpus import write_triples
 from annotations.models import Campaign, Submission
-from annotations.rows.synchronise import batches
 
 MOST_TASKS = 2_000  # of one file
-CHUNK = 1_000  # rows fetched, and sent, at once
+CHUNK = 1_000  # rows fetched at once
 # The keys of the table of submissions, in this order in every release.
 FIELDS = (
     *("id", "campaign", "contributor", "by", "kind", "prompt", "text", "logical_form"),
@@ -44,21 +43,21 @@ def task_file(campaign: Campaign, tasks: int) -> Iterator[bytes]:
             cells = [cell for key in dealer.deal(size) for cell in prompts[key]]
             yield cells + [""] * (len(head) - len(cells))
 
-    return _encode(csv_lines(head, rows()), 50)
+    return table_pieces(rows(), head, TableFormat.CSV)
 
 
 def submission_table(rows: QuerySet[Submission]) -> Iterator[bytes]:
     """Return submissions as CSV in pieces, by pseudonyms alone. ``flags`` are JSON."""
     related = rows.select_related("contributor__campaign", "prompt").order_by("pk")
     cells = (_cells(row) for row in related.iterator(chunk_size=CHUNK))
-    return _encode(csv_lines(FIELDS, cells))
+    return table_pieces(cells, FIELDS, TableFormat.CSV)
 
 
 def accepted_triples(campaign: Campaign) -> Iterator[bytes]:
     """Return the accepted rewrites of a campaign as triples in pieces: paraphrase, prompt, grounded form."""
     rows = campaign.world.paraphrases.accepted().filter(contributor__campaign=campaign)
     texts = rows.order_by("pk").values_list("utterance", "prompt", "grounded_form")
-    return _encode(write_triples(texts.iterator(chunk_size=CHUNK)))
+    return text_pieces(write_triples(texts.iterator(chunk_size=CHUNK)))
 
 
 def _cells(row: Submission) -> list[Any]:
@@ -79,7 +78,3 @@ def _cells(row: Submission) -> list[Any]:
         row.answered_at.isoformat() if row.answered_at else "",
         row.status,
     ]
-
-
-def _encode(lines: Iterable[str], chunk: int = CHUNK) -> Iterator[bytes]:
-    return ("".join(some).encode() for some in batches(lines, chunk))

@@ -11,6 +11,7 @@ from typing import Any
 from django.db import models
 from django.db.models import QuerySet
 
+from annotations.exchange.tables import text_pieces
 from annotations.language.corpus import Part
 from annotations.language.forms import read_form
 from annotations.language.plans import (
@@ -29,10 +30,9 @@ from annotations.language.plans import (
 from annotations.language.texts import LanguageError, Refusal, folded_words
 from annotations.models import Paraphrase, Split, World
 from annotations.models.splits import Source
-from annotations.rows.synchronise import batches
 from annotations.rows.task_plans import TaskPlanner
 
-CHUNK = 500  # rows fetched, and sent, at once
+CHUNK = 500  # rows fetched at once
 UNDONE = frozenset(map(str, RecipeTrouble))
 OPERATOR = "operator"
 INSTRUCTIONS = (
@@ -88,8 +88,7 @@ class RephrasedExport:
 
     def pieces(self) -> Iterator[bytes]:
         """Yield the file in pieces, none of them large."""
-        lines = (f"{json.dumps(case, ensure_ascii=False)}\n" for case in self._cases())
-        return ("".join(some).encode() for some in batches(lines, CHUNK))
+        return text_pieces(f"{json.dumps(case, ensure_ascii=False)}\n" for case in self._cases())
 
     def _cases(self) -> Iterator[dict[str, Any]]:
         planner = TaskPlanner.of(self.world)

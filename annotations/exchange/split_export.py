@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
 from django.db import models
-from django.db.models import Count
+from django.db.models import Count, QuerySet
 
-from annotations.exchange.parquet_export import parquet_pieces
 from annotations.exchange.pipe import Pipe
 from annotations.exchange.split_manifest import manifest_of
+from annotations.exchange.tables import CHUNK, table_pieces, text_pieces
 from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, Criterion, write_pairs
 from annotations.language.texts import Refusal
-from annotations.models import Split
-from annotations.rows.synchronise import batches
+from annotations.models import Example, Split
 
 # The keys of every export, in this order in every release.
 FIELDS = [
@@ -31,12 +28,8 @@ FIELDS = [
     "logical_form",
     "grounded_form",
 ]
-CHUNK = 2000  # rows fetched, and sent, at once
+TYPES = {"position": "int32"}
 MANIFEST = "manifest.json"
-
-# A spreadsheet takes a cell that begins so for a formula.
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
-Row = tuple[Any, ...]
 
 
 class SplitFormat(models.TextChoices):
@@ -56,38 +49,30 @@ def export_pieces(
 
     ``as_`` is a ``SplitFormat``. Raises Refusal for ``txt`` without ``part`` and ``source``.
     """
+    rows = _chosen(split, part, source).values_list(*FIELDS).iterator(chunk_size=CHUNK)
     match SplitFormat(as_):
-        case SplitFormat.PARQUET:
-            rows = _rows(split, part, source)
-            return parquet_pieces(rows, FIELDS, manifest_of(split, part, source))
+        case SplitFormat.TXT:
+            return text_pieces(pair_lines(split, part, source))
         case SplitFormat.ZIP:
             return _pair_archive(split, part, source)
-    lines = export_lines(split, as_, part, source)
-    return ("".join(some).encode() for some in batches(lines, CHUNK))
+        case SplitFormat.PARQUET:
+            return table_pieces(rows, FIELDS, as_, TYPES, manifest_of(split, part, source))
+    return table_pieces(rows, FIELDS, as_)
 
 
-def export_lines(
-    split: Split, as_: str, part: str | None = None, source: str | None = None
-) -> Iterator[str]:
-    """Return the chosen examples of ``split`` as lines of text, each with its line end.
+def pair_lines(split: Split, part: str | None, source: str | None) -> Iterator[str]:
+    """Return one part of one source as the lines of a pair file, each with its line end.
 
-    ``as_`` is a ``SplitFormat`` of text. ``txt`` is one pair file, so it needs ``part`` and ``source``; of an
-    imported split it is the file that came in, byte for byte. Raises Refusal without them.
+    Of an imported split it is the file that came in, byte for byte. Raises Refusal without ``part`` and ``source``.
     """
-    if as_ == SplitFormat.TXT and not (part and source):
+    if not (part and source):
         raise Refusal(
             "A pair file holds one part of one source: say which part and source.",
             "part_and_source_needed",
         )
-    match SplitFormat(as_):
-        case SplitFormat.TXT:
-            pairs = _rows(split, part, source, ("utterance", "written_form", "logical_form"))
-            return write_pairs((utterance, written or form) for utterance, written, form in pairs)
-        case SplitFormat.CSV:
-            return csv_lines(FIELDS, _rows(split, part, source))
-    encode = json.JSONEncoder(ensure_ascii=False).encode
-    rows = _rows(split, part, source)
-    return (encode(dict(zip(FIELDS, row, strict=True))) + "\n" for row in rows)
+    columns = ("utterance", "written_form", "logical_form")
+    pairs = _chosen(split, part, source).values_list(*columns).iterator(chunk_size=CHUNK)
+    return write_pairs((utterance, written or form) for utterance, written, form in pairs)
 
 
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
@@ -119,8 +104,7 @@ def _count_files(
     split: Split, part: str | None = None, source: str | None = None
 ) -> list[tuple[str, str, int]]:
     """Return source, part and number of examples of each pair file that is not empty, in order."""
-    chosen = {name: value for name, value in (("part", part), ("source", source)) if value}
-    rows = split.examples.filter(**chosen).order_by()
+    rows = _chosen(split, part, source).order_by()
     return sorted(rows.values_list("source", "part").annotate(n=Count("pk")))
 
 
@@ -130,35 +114,10 @@ def _write(path: Path, pieces: Iterable[bytes]) -> None:
         file.writelines(pieces)
 
 
-def _rows(
-    split: Split, part: str | None, source: str | None, fields: Iterable[str] = FIELDS
-) -> Iterator[Row]:
+def _chosen(split: Split, part: str | None, source: str | None) -> QuerySet[Example]:
     """Return the chosen examples in the order of the files."""
     chosen = {name: value for name, value in (("part", part), ("source", source)) if value}
-    return split.examples.filter(**chosen).values_list(*fields).iterator(chunk_size=CHUNK)
-
-
-class _Line:
-    """A file that keeps the one line written to it; ``csv`` writes to nothing less than a file."""
-
-    def write(self, text: str) -> None:
-        self.text = text
-
-
-def csv_lines(fields: Iterable[str], rows: Iterable[Iterable[Any]]) -> Iterator[str]:
-    """Yield a table with a head as lines of CSV; no cell is a formula for a spreadsheet."""
-    line = _Line()
-    writer = csv.writer(line)
-    writer.writerow(fields)
-    yield line.text
-    for row in rows:
-        writer.writerow([formula_safe(cell) for cell in row])
-        yield line.text
-
-
-def formula_safe(cell: Any) -> Any:
-    """Return ``cell`` with an apostrophe before anything that a spreadsheet would execute."""
-    return f"'{cell}" if isinstance(cell, str) and cell.startswith(FORMULA_STARTS) else cell
+    return split.examples.filter(**chosen)
 
 
 def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterator[bytes]:

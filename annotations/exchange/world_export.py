@@ -13,7 +13,7 @@ from annotations.exchange.archive_tables import FORMAT, VERSION, WORLD_FIELDS, A
 from annotations.exchange.archives import MANIFEST
 from annotations.exchange.generator_export import generator_files
 from annotations.exchange.pipe import Pipe
-from annotations.exchange.split_export import SplitFormat, export_lines, folder_of
+from annotations.exchange.split_export import folder_of, pair_lines
 from annotations.language.corpus import PART_FILES, TRIPLES_FILE
 from annotations.models import Duty, User, World
 from annotations.models.corpus import LabelQuerySet
@@ -137,7 +137,7 @@ def _readable_files(world: World) -> Iterator[tuple[str, Iterable[str]]]:
         counted = split.examples.order_by().values_list("source", "part").annotate(Count("pk"))
         for source, part, _ in sorted(counted):
             path = f"splits/{split.name}/{folder_of(split, source)}/{PART_FILES[part]}"
-            yield path, export_lines(split, SplitFormat.TXT, part, source)
+            yield path, pair_lines(split, part, source)
     for kind in KINDS.values():
         entries = kind.entries_of(world).order_by("history_id")
         if entries.exists():

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 
+import pandas
 import pytest
 from command_desk import SORRY_AWAY, WILL, WILL_NOT, CommandDesk
 from pytest_django.live_server_helper import LiveServer
@@ -137,6 +138,16 @@ def test_a_split_is_exported_by_its_name(home, parse_server, world, tmp_path):
     with pytest.raises(Refused, match=f"{split.name}-2") as refused:
         home.export(f"{split.name}-2", tmp_path / "three.jsonl")
     assert refused.value.status == 404
+
+
+def test_results_are_tables_that_pandas_reads(home, parse_server, world, tmp_path):
+    parquet = pandas.read_parquet(home.export_results(tmp_path / "all.parquet", "parquet"))
+    table = pandas.read_csv(home.export_results(tmp_path / "all.csv"))
+    assert list(table) == list(parquet)
+    assert table["run_id"].tolist() == parquet["run_id"].tolist()
+    with pytest.raises(Refused) as refused:
+        home.export_results(tmp_path / "all.xlsx", "xlsx")
+    assert refused.value.status == 400
 
 
 def test_refusals_and_absence_are_sentences(home, live_server, settings):

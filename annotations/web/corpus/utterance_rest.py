@@ -13,10 +13,11 @@ from rest_framework import serializers, status
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
+from annotations.exchange.tables import TableFormat
 from annotations.labelling.collecting import MOST_AT_ONCE, collect
 from annotations.labelling.entity_spans import mend_span
 from annotations.labelling.item_answers import answer
-from annotations.labelling.label_export import FIELDS, LabelFormat, export_labels
+from annotations.labelling.label_export import FIELDS, export_labels
 from annotations.labelling.upload_reading import UploadFormat as UploadFormat
 from annotations.labelling.utterance_deletion import delete_utterance
 from annotations.labelling.utterance_uploads import structure_of
@@ -104,7 +105,7 @@ class LabelExportQuery(serializers.Serializer[Any]):
 
     def get_fields(self) -> dict[str, Any]:
         # "as" is a word of Python and cannot be a class attribute.
-        return {"as": serializers.ChoiceField(choices=[*LabelFormat], default=LabelFormat.JSONL)}
+        return {"as": serializers.ChoiceField(choices=[*TableFormat], default=TableFormat.JSONL)}
 
 
 class UtteranceViewSet(RowsViewSet):

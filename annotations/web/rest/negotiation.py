@@ -19,6 +19,7 @@ CONTENT_TYPES: dict[str, str] = {
     SplitFormat.PARQUET: "application/vnd.apache.parquet",
     SplitFormat.ZIP: "application/zip",
     "json": "application/json; charset=utf-8",
+    "tex": "application/x-tex; charset=utf-8",
 }
 
 

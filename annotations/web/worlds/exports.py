@@ -13,8 +13,8 @@ from django.utils.http import urlencode
 from annotations.exchange.generator_export import GeneratorPart
 from annotations.exchange.rephrased_export import RephrasedFormat
 from annotations.exchange.split_export import SplitFormat
+from annotations.exchange.tables import TableFormat
 from annotations.exchange.vocabulary_export import VocabularyFormat, VocabularyPart
-from annotations.labelling.label_export import LabelFormat
 from annotations.models import (
     Duty,
     Entity,
@@ -138,9 +138,9 @@ def _vocabulary_links(world: World) -> Iterable[ExportLink]:
 def _utterance_links(world: World) -> Iterable[ExportLink]:
     if Utterance.objects.filter(world=world).exists():
         labels = {
-            LabelFormat.JSONL: "JSON Lines",
-            LabelFormat.CSV: "CSV",
-            LabelFormat.PARQUET: "Parquet",
+            TableFormat.JSONL: "JSON Lines",
+            TableFormat.CSV: "CSV",
+            TableFormat.PARQUET: "Parquet",
         }
         yield from _by_format(world, "api:utterance-export", labels.items())
 

@@ -154,12 +154,28 @@ class Workbench:
         """Write the examples of a split, named or by its number, to a file and return its path.
 
         The file is written under another name and renamed when it is complete, so that a download that
-        breaks off replaces nothing. ``format`` is one that the page of a split offers: txt, jsonl, csv.
+        breaks off replaces nothing. ``format`` is one that the page of a split offers: txt, jsonl, csv, parquet, zip.
         ``part`` is train, validation or test; ``source`` generated or paraphrased. By default all
         examples are written.
         """
         query = {"as": format, "part": part, "source": source}
         return self._download(f"splits/{self._split(split)}/export/", query, file)
+
+    def export_results(
+        self,
+        file: str | Path,
+        format: str = "csv",
+        part: str | None = None,
+        split: str | None = None,
+        measure: str | None = None,
+    ) -> Path:
+        """Write the figures of the results page to a file, one a row, and return its path.
+
+        ``format`` is csv or parquet, as pandas reads them, json, or tex: the tables in LaTeX. ``part`` is validation
+        or test; ``measure`` exact, equivalent, same_plan, all or well_formed. By default they are those of the page.
+        """
+        query = {"format": format, "part": part, "split": split, "measure": measure}
+        return self._download("results/", query, file)
 
     def export_vocabulary(
         self, file: str | Path, format: str = "txt", only: str | None = None

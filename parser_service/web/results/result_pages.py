@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 from typing import Any
 
 from django.contrib import messages
-from django.http import HttpResponse, JsonResponse
+from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
-from annotations.exchange.split_export import formula_safe
 from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from parser_service.results.answerer_rows import answerer_tables
-from parser_service.results.export import HEADER, as_json, rows_of
-from parser_service.results.latex import as_latex
+from parser_service.results.export import ResultsFormat
 from parser_service.results.measuring_job import request_measurement
 from parser_service.results.result_choices import read_choices, scored_splits
+from parser_service.web.results.result_files import results_file
 
 
 @world_view(Duty.VIEW)
@@ -50,42 +48,11 @@ def results_measure(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @world_view(Duty.VIEW)
-def results_csv(request: WorldRequest, world: World) -> HttpResponse:
-    """Download what the tables show, one figure per line."""
-    choices = read_choices(request.GET, world, scored_splits(world))
-    response = HttpResponse(
-        content_type="text/csv; charset=utf-8", headers=as_attachment(world, "csv")
-    )
-    writer = csv.writer(response)
-    writer.writerow(HEADER)
-    rows = rows_of(choices.tables(world))
-    writer.writerows([formula_safe(cell) for cell in row] for row in rows)
-    return response
-
-
-@world_view(Duty.VIEW)
-def results_latex(request: WorldRequest, world: World) -> HttpResponse:
-    """Download the tables for a paper."""
-    choices = read_choices(request.GET, world, scored_splits(world))
-    return HttpResponse(
-        as_latex(choices, choices.tables(world)),
-        content_type="application/x-tex; charset=utf-8",
-        headers=as_attachment(world, "tex"),
-    )
-
-
-@world_view(Duty.VIEW)
-def results_json(request: WorldRequest, world: World) -> HttpResponse:
-    """Download the choices of the page and what its tables show."""
-    choices = read_choices(request.GET, world, scored_splits(world))
-    shown = as_json(world, choices, choices.tables(world))
-    options = {"indent": 1, "ensure_ascii": False}
-    return JsonResponse(shown, json_dumps_params=options, headers=as_attachment(world, "json"))
-
-
-def as_attachment(world: World, ending: str) -> dict[str, str]:
-    """Return the header with which a browser stores an answer as a file."""
-    return {"Content-Disposition": f'attachment; filename="{world.name}-results.{ending}"'}
+def results_download(request: WorldRequest, world: World, as_: str) -> HttpResponse:
+    """Download what the tables show; ``as_`` is a ``ResultsFormat``."""
+    if as_ not in [*ResultsFormat]:
+        raise Http404("There is no such format.")
+    return results_file(world, request.GET, as_)
 
 
 def results_of(request: WorldRequest, world: World) -> dict[str, Any]:

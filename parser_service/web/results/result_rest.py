@@ -6,6 +6,7 @@ from typing import Any
 
 import django_filters
 from django.db.models import Case, OuterRef, Q, QuerySet, Subquery, When
+from django.http import HttpResponse
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema, extend_schema_field
@@ -17,14 +18,15 @@ from annotations.models import Duty, Split
 from annotations.showing.filtering import Key
 from annotations.web.rest.fields import Fields
 from annotations.web.rest.idempotency import once
+from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowsViewSet, WorldRoute
 from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.models import Evaluation
-from parser_service.results.export import as_json
+from parser_service.results.export import ResultsFormat
 from parser_service.results.measures import Measure, interval_of, is_known
 from parser_service.results.measuring_job import request_measurement
-from parser_service.results.result_choices import read_choices, scored_splits
+from parser_service.web.results.result_files import results_file
 
 IntervalField = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2)
 MaybeIntervalField = serializers.ListField(
@@ -116,12 +118,28 @@ class Measurement(WorldRoute):
         return accepted(request, job)
 
 
+class ResultsQuery(serializers.Serializer[Any]):
+    """What may be asked of the results, beside what the address of their page has."""
+
+    format = serializers.ChoiceField(choices=[*ResultsFormat], default=ResultsFormat.JSON)
+
+
 class Results(WorldRoute):
     """Shows what the results page shows, for the parameters of its address: one figure a row."""
 
     model = Split
+    content_negotiation_class = AnyType
 
-    @extend_schema(responses={200: OpenApiTypes.OBJECT})
-    def get(self, request: ApiRequest, **kwargs: object) -> Response:
-        choices = read_choices(request.query_params, self.world, scored_splits(self.world))
-        return Response(as_json(self.world, choices, choices.tables(self.world)))
+    @extend_schema(
+        parameters=[ResultsQuery],
+        responses={
+            (200, "application/json"): OpenApiTypes.OBJECT,
+            (200, "text/csv"): OpenApiTypes.STR,
+            (200, "application/vnd.apache.parquet"): OpenApiTypes.BINARY,
+            (200, "application/x-tex"): OpenApiTypes.STR,
+        },
+    )
+    def get(self, request: ApiRequest, **kwargs: object) -> HttpResponse:
+        query = ResultsQuery(data=request.query_params)
+        query.is_valid(raise_exception=True)
+        return results_file(self.world, request.query_params, query.validated_data["format"])

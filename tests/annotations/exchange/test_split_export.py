@@ -4,10 +4,11 @@ import csv
 import io
 import json
 
+import pandas
 import pytest
 
 from annotations.exchange.pair_files import gather_pairs, read_pair_folder
-from annotations.exchange.split_export import FIELDS, export_lines, export_split
+from annotations.exchange.split_export import FIELDS, export_pieces, export_split, pair_lines
 from annotations.generation.freezing import freeze_split
 from annotations.generation.generating import generate_pairs
 from annotations.language.corpus import Criterion
@@ -21,26 +22,38 @@ def split(tiny_world):
     return freeze_split(tiny_world, "first")
 
 
+def written(split, as_: str) -> str:
+    return b"".join(export_pieces(split, as_)).decode()
+
+
 def test_a_pair_file_needs_a_part_and_a_source(split):
     with pytest.raises(Refusal) as refused:
-        export_lines(split, "txt", part="train")
+        pair_lines(split, "train", None)
     assert refused.value.code == "part_and_source_needed"
 
 
 def test_every_format_gives_every_example_in_one_query(split, django_assert_num_queries):
     with django_assert_num_queries(1):
-        rows = [json.loads(line) for line in export_lines(split, "jsonl")]
+        rows = [json.loads(line) for line in written(split, "jsonl").splitlines()]
     with django_assert_num_queries(1):
-        cells = list(csv.DictReader(io.StringIO("".join(export_lines(split, "csv")))))
+        cells = list(csv.DictReader(io.StringIO(written(split, "csv"))))
     assert len(rows) == len(cells) == 3
     assert list(rows[0]) == list(cells[0]) == FIELDS
     assert [row["utterance"] for row in rows] == [row["utterance"] for row in cells]
 
 
+def test_pandas_reads_tables_as_they_are(split):
+    rows = list(split.examples.values(*FIELDS))
+    files = {as_: io.BytesIO(b"".join(export_pieces(split, as_))) for as_ in ("parquet", "csv")}
+    assert pandas.read_parquet(files["parquet"]).to_dict("records") == rows
+    table = pandas.read_csv(files["csv"], dtype={"task_category": str}, keep_default_na=False)
+    assert table.to_dict("records") == rows
+
+
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])
 def test_no_cell_is_a_formula(split, start):
     split.examples.update(utterance=f"{start}cmd|' /C calc'!A0")
-    for row in csv.DictReader(io.StringIO("".join(export_lines(split, "csv")), newline="")):
+    for row in csv.DictReader(io.StringIO(written(split, "csv"), newline="")):
         assert row["utterance"].startswith(f"'{start}")
 
 

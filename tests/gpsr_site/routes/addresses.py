@@ -71,6 +71,7 @@ KEYS: dict[str, RouteKeys] = {
     **dict.fromkeys(("api:token-detail", "api:notice-read"), lambda _: {"pk": 10**6}),
     "api:session": lambda _: {"handle": "none"},
     **dict.fromkeys(("api:site-job-detail", "api:site-job-cancel"), pk_of(job_without_world)),
+    "results_download": lambda _: {"as_": "csv"},
     "document": lambda _: {"shelf": "guides", "page": "first-steps"},
     "document_image": lambda _: {"name": "run.png"},
     "join": join_keys,

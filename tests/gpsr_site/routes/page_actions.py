@@ -260,8 +260,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     **dict.fromkeys(("promotions", "parser_state"), "get promotion-list"),
     "offered_entities": "get offered-entity-list",
     "plan_schema": NoRoute("The page is the file itself, for programs."),
-    **dict.fromkeys(("results", "results_table", "results_csv"), "get results"),
-    **dict.fromkeys(("results_latex", "results_json"), "get results"),
+    **dict.fromkeys(("results", "results_table", "results_download"), "get results"),
     "compare": "get evaluation-list, get predictions",
     **dict.fromkeys(
         ("learning_curves", "learning_curves_table", "learning_curves_data"),

@@ -9,12 +9,14 @@ import subprocess
 from shutil import which
 from statistics import mean, stdev
 
+import pandas
 import pytest
 from django.urls import reverse
 
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import config_values, make_config
+from parser_service.results.export import COLUMNS
 from parser_service.results.latex import escape
 from parser_service.results.table_parts import MAY_KNOW_CORPORA
 from parser_service.runs import run_requests
@@ -96,9 +98,41 @@ def test_a_figure_that_is_not_known_is_a_line_without_numbers(sample, anna):
     assert SHOWN.findall(anna.get("/w/home/results/", chosen).content.decode()) == ["16.7"]
 
 
+@pytest.mark.parametrize(
+    "address",
+    ["/w/home/results.{}?measure=all", "/api/v1/worlds/home/results/?measure=all&format={}"],
+)
+def test_pandas_reads_tables_as_they_are(address, sample, anna):
+    seeds(sample, 2, 6)
+    sample.run.evaluations.update(same_plan=None)
+    figures = anna.get(address.format("json")).json()["figures"]
+    parquet, csv_ = (anna.get(address.format(as_)) for as_ in ("parquet", "csv"))
+    table = pandas.read_parquet(io.BytesIO(parquet.content))
+    cells = table.astype(object)
+    assert cells.where(cells.notna(), None).to_dict("records") == figures
+    assert list(table) == list(COLUMNS) and len(table) == 6
+    numbers = ["run_id", "n_seeds", "accuracy", "percent", "spread", "published"]
+    assert [table[name].dtype.kind for name in numbers] == [*"iiffff"]
+    plain = pandas.read_csv(io.BytesIO(csv_.content), keep_default_na=False)
+    assert plain.astype(str).equals(cells.astype(object).where(cells.notna(), "").astype(str))
+    assert (parquet["Content-Type"], csv_["Content-Type"]) == (
+        "application/vnd.apache.parquet",
+        "text/csv; charset=utf-8",
+    )
+
+
+def test_a_format_that_there_is_not_is_refused(sample, anna):
+    assert anna.get("/w/home/results.xlsx").status_code == 404
+    refused = anna.get("/api/v1/worlds/home/results/?format=xlsx")
+    assert refused.status_code == 400
+    assert refused.json()["problems"][0]["field"] == "format"
+    accepted = anna.get("/api/v1/worlds/home/results/?format=csv", headers={"accept": "text/csv"})
+    assert accepted.status_code == 200
+
+
 def test_the_downloads_are_offered_with_the_choices_of_the_page(sample, anna):
     page = anna.get("/w/home/results/", {"measure": "all", "part": "test"}).content.decode()
-    for ending in ("csv", "tex", "json"):
+    for ending in ("csv", "parquet", "tex", "json"):
         query = "part=test&amp;split=home-split&amp;measure=all"
         assert f'href="/w/home/results.{ending}?{query}"' in page
 
