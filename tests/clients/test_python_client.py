@@ -94,7 +94,7 @@ def test_many_utterances_are_parsed_in_order(home):
 
 
 def test_a_batch_that_breaks_off_is_not_taken_for_whole(home, monkeypatch):
-    monkeypatch.setattr(parsing_rest, "SHARE_OF_TIME", 0)
+    monkeypatch.setattr(parsing_rest, "MOST_SECONDS", 0)
     answered = []
     with pytest.raises(Away, match=r"\b\d+ of 200 "):
         for parse in home.parse_many(["find the red cup"] * 200):
