@@ -243,7 +243,7 @@ def repeated(names: list[str]) -> str:
     return f"{len(counts)} names, {sum(counts)}"
 
 
-def figures_of(root: Path, packages: Sequence[str]) -> dict[str, str]:
+def figures_of(root: Path, packages: Sequence[str] = PACKAGES) -> dict[str, str]:
     """Return the figures of a checkout by what they count."""
     house = House(root, packages)
     modules = list(house.modules.values())
