@@ -79,9 +79,12 @@ def nothing_about_models() -> None:
 
 @pytest.fixture(autouse=True, scope="session")
 def quick_and_plain() -> Iterator[None]:
-    """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing."""
+    """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing; no line for
+    downloads, since a test's client seldom reads one to its end."""
     plain = {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"}
+    shares = "gpsr_site.web.thread_shares.ThreadShares"
     with override_settings(
+        MIDDLEWARE=[each for each in site.MIDDLEWARE if each != shares],
         STORAGES={**site.STORAGES, "staticfiles": plain},
         PASSWORD_HASHERS=["django.contrib.auth.hashers.MD5PasswordHasher"],
     ):

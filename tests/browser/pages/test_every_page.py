@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import closing
 from dataclasses import dataclass, replace
 
 import pytest
@@ -73,8 +72,7 @@ def addresses(sample: SampleWorld, client: Client) -> list[str]:
 
 def is_page(answer: HttpResponseBase) -> bool:
     """Whether a browser shows ``answer`` as a page; it saves others as files."""
-    with closing(answer):  # a download keeps its place in the line of downloads until then
-        return not answer.has_header("Content-Disposition") and b"<h1" in b"".join(answer)
+    return not answer.has_header("Content-Disposition") and b"<h1" in b"".join(answer)
 
 
 @dataclass(frozen=True)

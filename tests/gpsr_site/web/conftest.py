@@ -13,6 +13,7 @@ import waitress
 from django.core.wsgi import get_wsgi_application
 from django.db import connections
 
+from gpsr_site import settings as as_served
 from gpsr_site.web.server import OPTIONS, listen
 from tests.waiting import PATIENCE_SECONDS
 
@@ -65,7 +66,8 @@ def server() -> Site:
 
 
 @pytest.fixture
-def site(server, transactional_db, monkeypatch) -> Site:
+def site(server, transactional_db, monkeypatch, settings) -> Site:
+    settings.MIDDLEWARE = as_served.MIDDLEWARE
     monkeypatch.setitem(connections.settings["default"], "CONN_MAX_AGE", 0)
     server.application = get_wsgi_application()  # with the shares of threads that the test sets
     return server
