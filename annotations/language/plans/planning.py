@@ -272,9 +272,8 @@ class _Planner:
     def step(self, form: Application, scope: _ActionScope) -> int:
         """Add the step of one action, after the steps whose results it needs; return its number."""
         if len(self.steps) >= MOST_STEPS:
-            if not any(each.trouble is Trouble.TOO_LONG for each in self.problems):
-                message = f"the plan has more than {MOST_STEPS} steps"
-                self.report(Trouble.TOO_LONG, message, "give shorter commands", step=0)
+            message = f"the plan has more than {MOST_STEPS} steps"
+            self.report(Trouble.TOO_LONG, message, "give shorter commands", step=0)
             return MOST_STEPS
         action = str(form.predicate)
         before, self.waiting = self.waiting, []

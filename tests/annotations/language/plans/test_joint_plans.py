@@ -184,6 +184,12 @@ def test_a_table_without_sense_is_refused(rows):
 
 def test_a_table_has_rows():
     assert Distances.of_rows([("a", "b", 1.0), ("b", "a", 1.0)]).table[("a", "b")] == 1
+    assert Distances.of_rows([("a", "b", 0.0), ("a", "a", 0.0)]).table[("a", "b")] == 0
+
+
+def test_a_way_inside_a_room_that_the_table_lacks_is_none():
+    far = Distances({("operator", "attic"): 3.0})
+    assert joined('(go "attic")', '(go "stool")', distances=far).length == 6
 
 
 def test_more_than_three_commands_are_refused():
@@ -499,6 +505,29 @@ def test_the_robot_changes_between_commands_as_little_as_it_can():
     joint = joined(*forms)
     in_turn = [commands for commands, _ in groupby(joint.serves[:-1])]
     assert in_turn == [(2,), (1,)]
+
+
+NO_WAYS = Distances({("attic", "stool"): 0.0})
+
+
+def test_of_equally_long_walks_the_one_of_fewer_moves_is_taken():
+    joint = joined('(sequence (go "attic") (go "stool"))', '(go "attic")', distances=NO_WAYS)
+    assert calls(joint.plan) == ["go_to(attic)", "go_to(stool)", "go_to(operator)"]
+
+
+def test_the_way_back_is_a_move_too():
+    joint = joined(COUNT.format("attic"), '(go "tea room")', distances=NO_WAYS)
+    assert calls(joint.plan).count("go_to(operator)") == 1
+
+
+def test_a_question_is_worth_a_change_between_commands():
+    joint = joined('(say "a joke")', "(go UNKNOWN)")
+    assert joint.serves[0] == (2,)
+
+
+def test_the_earlier_of_two_equal_commands_is_not_overtaken():
+    joint = joined('(go "tea room")', '(say "a joke")', f'(put {TEA} "tea room")')
+    assert joint.serves[0] == (2,)
 
 
 def test_of_equal_orders_the_earlier_command_comes_first():

@@ -363,6 +363,27 @@ def test_a_long_sequence_is_cut_and_said() -> None:
     assert troubles(plan) == [Trouble.TOO_LONG]
 
 
+@pytest.mark.parametrize(
+    ("form", "n_questions"),
+    [
+        ('(put (λ$1:e (is_a $1 "<object>")) (λ$1:e (is_a $1 "<object>")))', 2),
+        ('(bring (λ$1:e (near $1 (λ$2:e (is_a $2 "<object>"))) (is_a $1 "<object>")))', 2),
+        ("(λ$1:e (guide (person $1)))", 1),  # the destination, beside a description
+    ],
+)
+def test_each_open_argument_has_a_question_of_its_own(form: str, n_questions: int) -> None:
+    plan = plan_of(form)
+    asked = [said_in(plan, number, "question")["text"] for number in range(len(plan.steps) - 1)]
+    assert [each.predicate for each in plan.steps[:-1]] == [ASK] * n_questions
+    assert len(set(asked)) == n_questions
+
+
+def test_a_command_of_which_nothing_is_understood_has_no_action_beside_its_question() -> None:
+    plan = plan_of("(sequence UNKNOWN)")
+    assert troubles(plan) == [Trouble.NOT_UNDERSTOOD, Trouble.NO_ACTION]
+    assert [each.predicate for each in plan.steps] == [ASK]
+
+
 @given(forms())
 def test_every_form_has_a_plan_that_follows_the_schemas(form: Any) -> None:
     require_valid(make_plan(form, HOME))

@@ -13,6 +13,7 @@ from parser_service.analysis.encoded_labels import encode
 from parser_service.analysis.outcomes import encode_clusters
 from parser_service.analysis.slicing import accuracy_of_labels, bin_names, head_predicates
 from parser_service.models import ErrorCategory, Prediction, Review, Slice
+from parser_service.results import breakdown
 from parser_service.results.saving import save_slice
 from parser_service.runs.split_pairs import cluster_of
 from tests.sample_world import scored_run
@@ -211,6 +212,36 @@ def test_saved_slices_are_rows_of_their_own(sample, second, anna):
     assert (rows["fetching"].count, rows["nothing"].count) == (2, 0)
     assert rows["nothing"].cells[0].percent is None
     assert anna.get(rows["fetching"].url).context["compared"].count == 2
+
+
+@pytest.mark.parametrize(("most", "fetching"), [(11, None), (12, 2)])
+def test_of_many_examples_only_slices_that_columns_tell_are_counted(
+    most, fetching, sample, second, anna, monkeypatch
+):
+    monkeypatch.setattr(breakdown, "MOST_ASKED", most)
+    save_slice(sample.world, "fetching", "q=fetch")
+    save_slice(sample.world, "short", "max_words=7")
+    rows = {row.title: row for row in compare(anna, sample.run, second).context["saved"].rows}
+    short = sample.split.examples.filter(part="validation", word_count__lte=7).count()
+    assert {title: row.count for title, row in rows.items()} == {
+        "fetching": fetching,
+        "short": short,
+    }
+    assert bool(rows["fetching"].cells) == (fetching is not None)
+    assert anna.get(rows["fetching"].url).context["compared"].count == 2
+
+
+def test_of_many_groups_the_frequent_ones_are_shown(sample, second, anna, monkeypatch):
+    tables = {
+        table.name: table for table in compare(anna, sample.run, second).context["breakdowns"]
+    }
+    monkeypatch.setattr(breakdown, "MOST_ROWS", 2)
+    context = compare(anna, sample.run, second).context
+    cut = {table.name: table for table in context["breakdowns"]}
+    heads = sorted((row.count for row in tables["head"].rows), reverse=True)
+    assert [row.count for row in cut["head"].rows] == heads[:2]
+    assert cut["head"].n_more == len(heads) - 2
+    assert all(len(table.rows) > 1 for table in tables.values())
 
 
 def test_errors_are_broken_down_by_what_people_say_of_them_or_else_the_machine(

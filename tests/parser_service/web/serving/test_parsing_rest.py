@@ -13,10 +13,12 @@ from annotations import background
 from annotations.background.carrying_out_jobs import carry_out
 from annotations.background.job_files import results_folder
 from annotations.background.sweeping import sweep
+from annotations.background.watching import JobProgress
 from annotations.exchange.generator_import import import_generator
 from annotations.models import ApiToken, Job
 from annotations.web.rest.streaming import BrokenOff
 from parser_service.runs.promoting import promote
+from parser_service.serving.answerer import LINES_TOGETHER
 from parser_service.serving.batch_requests import MOST_AT_ONCE
 from parser_service.serving.shelf import Shelf
 from parser_service.web.serving import parsing_rest
@@ -117,6 +119,37 @@ def test_a_worker_parses_a_batch_and_its_answers_are_downloaded(world, ask):
     answers = answers_of(ask("get", f"{path}result/"))
     assert len(answers) == 102 and answers[100]["line"] == 101
     assert len(answers[101]["candidates"]) == 2
+
+
+def test_a_batch_says_how_far_it_is_and_leaves_its_result_alone(world, ask, monkeypatch):
+    reported, report = [], JobProgress.report
+
+    def note(progress, fraction, activity):
+        reported.append(fraction)
+        report(progress, fraction, activity)
+
+    monkeypatch.setattr(JobProgress, "report", note)
+    run = trained_run(make_home(world))
+    job = ask("post", f"parse/jobs/?run={run.pk}", BOWL * 3 * LINES_TOGETHER).json()["id"]
+    assert carry_out_next().status == "succeeded"
+    assert reported == pytest.approx([0, 1 / 3, 2 / 3, 1])
+    assert [each.name for each in results_folder().iterdir()] == [f"{job}.jsonl"]
+    assert results_folder().stat().st_mode & 0o077 == 0  # nobody else's
+
+
+def test_a_batch_that_is_cancelled_leaves_no_half_result(world, ask, monkeypatch):
+    report = JobProgress.report
+
+    def stop(progress, fraction, activity):
+        if fraction:
+            raise background.Stopped
+        report(progress, fraction, activity)
+
+    monkeypatch.setattr(JobProgress, "report", stop)
+    run = trained_run(make_home(world))
+    ask("post", f"parse/jobs/?run={run.pk}", BOWL)
+    assert carry_out_next().status == "cancelled"
+    assert list(results_folder().iterdir()) == []
 
 
 def test_a_language_model_may_take_its_time_for_a_batch(world, ask, tmp_path, monkeypatch):
