@@ -75,21 +75,23 @@ EXAMPLES = [each for page in PAGES for each in examples_of(page)]
 RUN = [each for each in EXAMPLES if not each.mark and each.language in (*SHELLS, "python")]
 
 
-def by_name(examples):
-    return pytest.mark.parametrize("example", examples, ids=lambda each: each.name)
+def test_an_example_says_what_it_is(subtests):
+    for example in EXAMPLES:
+        with subtests.test(example.name):
+            assert example.language in LANGUAGES
+            assert len(example.mark.split()) != 1, "Say what it needs, or of what it is the output."
+            assert example.language != "json" or example.mark.startswith("Output")
+            if example in RUN and example.language == "sh":  # nothing else is run here
+                assert all(re.match(rf"curl |{re.escape(MANAGE)}", line) for line in example.lines)
 
 
-@by_name(EXAMPLES)
-def test_an_example_says_what_it_is(example):
-    assert example.language in LANGUAGES
-    assert len(example.mark.split()) != 1, "Say what it needs, or of what it is the output."
-    assert example.language != "json" or example.mark.startswith("Output")
-    if example in RUN and example.language == "sh":  # nothing else is run here
-        assert all(re.match(rf"curl |{re.escape(MANAGE)}", line) for line in example.lines)
+def test_a_command_is_one_of_the_project(subtests):
+    for example in (each for each in EXAMPLES if each.language in SHELLS):
+        with subtests.test(example.name):
+            check_commands(example)
 
 
-@by_name([each for each in EXAMPLES if each.language in SHELLS])
-def test_a_command_is_one_of_the_project(example):
+def check_commands(example: Example) -> None:
     done = subprocess.run(["bash", "-n"], input=example.text, text=True, capture_output=True)
     assert not done.returncode, done.stderr
     for line in example.lines:
@@ -104,12 +106,13 @@ def test_a_command_is_one_of_the_project(example):
             assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.M)
 
 
-@by_name([each for each in EXAMPLES if each.language in ("python", "json")])
-def test_an_example_can_be_read(example):
-    if example.language == "python":
-        compile(example.text, example.name, "exec")
-    else:
-        shown(example)
+def test_an_example_can_be_read(subtests):
+    for example in EXAMPLES:
+        with subtests.test(example.name):
+            if example.language == "python":
+                compile(example.text, example.name, "exec")
+            elif example.language == "json":
+                shown(example)
 
 
 def shown(example: Example) -> dict:

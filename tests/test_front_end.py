@@ -7,8 +7,6 @@ from functools import cache
 from itertools import chain
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parent.parent
 TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
 STYLES = sorted((ROOT / "static" / "css").glob("*.css"))
@@ -60,11 +58,15 @@ def classes_of(style: Path) -> set[str]:
     return set(CLASS.findall(" ".join(heads)))
 
 
-@pytest.mark.parametrize("style", STYLES, ids=lambda path: path.name)
-def test_every_class_of_a_style_sheet_is_used(style):
+def name_of(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def test_every_class_of_a_style_sheet_is_used():
     used = words_of_classes() | OF_DJANGO
     unused = {
-        name
+        (name_of(style), name)
+        for style in STYLES
         for name in classes_of(style)
         if name not in used and not name.startswith((*OF_LIBRARIES, *beginnings()))
     }
@@ -88,10 +90,13 @@ def test_no_rule_of_one_class_alone_stands_twice():
     assert sorted({head for head in single if single.count(head) > 1}) == []
 
 
-@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_lines_of_a_template_can_be_read(template):
-    lines = enumerate(read(template).splitlines(), start=1)
-    long = {number: len(line) for number, line in lines if len(line) > LONGEST_LINE}
+def test_lines_of_a_template_can_be_read():
+    long = {
+        f"{name_of(template)}:{number}": len(line)
+        for template in TEMPLATES
+        for number, line in enumerate(read(template).splitlines(), start=1)
+        if len(line) > LONGEST_LINE
+    }
     assert not long
 
 
@@ -102,10 +107,9 @@ def test_every_colour_and_measure_that_a_style_names_is_there():
     assert set(re.findall(r"var\((--[\w-]+)", styles)) <= given
 
 
-@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_figures_are_rounded_by_one_filter(template):
+def test_figures_are_rounded_by_one_filter():
     """Pages, reports and downloads round 66.25 alike, which Django's ``floatformat`` does not."""
-    assert not re.findall(r"floatformat:[1-9]", read(template))
+    assert not [name_of(each) for each in TEMPLATES if re.search("floatformat:[1-9]", read(each))]
 
 
 # One place reads keys, so that each shortcut obeys on every keyboard and none in a composition.
@@ -114,7 +118,6 @@ KEY_READ = re.compile(r"\b(?:event|e)\??\.(?:key|code|keyCode|which|isComposing)
 READERS_OF_KEYS = {"typing.js", "theme.js"}
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
-def test_one_script_alone_reads_the_keyboard(script):
-    reads = bool(KEY_READ.search(read(script)))
-    assert reads == (script.name in READERS_OF_KEYS), "ask keyOf of typing.js"
+def test_one_script_alone_reads_the_keyboard():
+    readers = {script.name for script in SCRIPTS if KEY_READ.search(read(script))}
+    assert readers == READERS_OF_KEYS, "ask keyOf of typing.js"

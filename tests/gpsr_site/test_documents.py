@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote
@@ -47,6 +48,7 @@ class Addresses(HTMLParser):
         self.leads_to += [given[name] for name in ("href", "src") if name in given]
 
 
+@cache
 def parts_of(name: str) -> Addresses:
     document = find_document(name)
     assert document is not None, name
@@ -59,42 +61,42 @@ def name_at(address: str) -> str:
     return f"{keys['shelf']}/{keys['page']}" if keys else INDEX
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_a_document_has_one_title_and_no_id_twice(name):
-    document = find_document(name)
-    assert [each.level for each in document.headings].count(1) == 1
-    assert document.headings[0].level == 1 and document.title
-    ids = parts_of(name).ids
-    assert len(ids) == len(set(ids)) and all(each.startswith(ANCHOR) for each in ids)
+def test_a_document_has_one_title_and_no_id_twice(subtests):
+    for name in FILES:
+        with subtests.test(name):
+            document = find_document(name)
+            assert [each.level for each in document.headings].count(1) == 1
+            assert document.headings[0].level == 1 and document.title
+            ids = parts_of(name).ids
+            assert len(ids) == len(set(ids)) and all(each.startswith(ANCHOR) for each in ids)
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_what_a_document_links_is_there(name):
-    for target in parts_of(name).leads_to:
+def test_what_a_document_links_is_there(subtests):
+    for name, target in [(each, target) for each in FILES for target in parts_of(each).leads_to]:
         if target.startswith(("http:", "https:")):
             continue
-        address, _, anchor = target.partition("#")
-        match = resolve(address)
-        if match.url_name == "document_image":
-            assert find_image(match.kwargs["name"]), target
-        else:
-            assert not anchor or unquote(anchor) in parts_of(name_at(address)).ids, target
+        with subtests.test(name, target=target):
+            address, _, anchor = target.partition("#")
+            match = resolve(address)
+            if match.url_name == "document_image":
+                assert find_image(match.kwargs["name"])
+            else:
+                assert not anchor or unquote(anchor) in parts_of(name_at(address)).ids
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_the_policy_of_content_lets_a_document_be_as_it_is(name):
+def test_the_policy_of_content_lets_a_document_be_as_it_is():
     """Styles of elements would be refused; numbers are right-aligned by a class."""
-    assert not parts_of(name).styles
-    assert "<script" not in find_document(name).html
+    assert not {name: styles for name in FILES if (styles := parts_of(name).styles)}
+    assert not [name for name in FILES if "<script" in find_document(name).html]
 
 
-@pytest.mark.parametrize("target", LINKS)
-def test_a_link_of_a_page_names_a_document_and_a_heading(target):
-    name, _, anchor = target.strip('"').partition("#")
-    document = find_document(name)
-    assert document is not None, f"there is no docs/{name}.md"
-    assert not anchor or document.heading(anchor), f"docs/{name}.md has no heading {anchor}"
-    assert document.shelf in SHELVES.values()
+def test_a_link_of_a_page_names_a_document_and_a_heading(subtests):
+    for target in LINKS:
+        with subtests.test(target):
+            name, _, anchor = target.strip('"').partition("#")
+            document = find_document(name)
+            assert document is not None and document.shelf in SHELVES.values()
+            assert not anchor or document.heading(anchor)
 
 
 def test_pages_where_people_get_stuck_have_links():

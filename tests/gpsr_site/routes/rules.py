@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+
+from django.db import transaction
 
 PEOPLE = ("anonymous", "stranger", "annotator", "reviewer", "admin")
 LOG_IN, NOWHERE, NO, YES, GONE_ON, WRONG, BAD = 302, 404, 403, 200, 302, 405, 400
@@ -25,3 +29,11 @@ class Rule:
 
     def __str__(self) -> str:
         return f"{self.method} {self.name}"
+
+
+@contextmanager
+def undone() -> Iterator[None]:
+    """Undo what requests do, so that the next ones find the same rows."""
+    with transaction.atomic():
+        yield
+        transaction.set_rollback(True)

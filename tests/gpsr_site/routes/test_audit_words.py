@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from annotations.people.audit_log import UNRECORDED, WHAT
 from tests.gpsr_site.routes.policy import POLICY
 
@@ -14,6 +12,5 @@ POSTED = {
 }
 
 
-@pytest.mark.parametrize("name", sorted(POSTED))
-def test_whatever_a_page_changes_has_words_of_its_own(name):
-    assert name in WHAT
+def test_whatever_a_page_changes_has_words_of_its_own():
+    assert sorted(POSTED - WHAT.keys()) == []

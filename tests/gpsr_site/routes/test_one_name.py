@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-import pytest
-
 from gpsr_site.pages.places import all_places, way_to
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.listing import ALL_ROUTES, API_ROUTES, ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.policy import POLICY
+from tests.gpsr_site.routes.rules import undone
 
 METHODS = sorted({(rule.name, rule.method) for rule in POLICY if rule.name not in API_ROUTES})
 # The list of all worlds and what is about no kind of work have no entry in the rail of a world.
@@ -80,27 +79,31 @@ def plain(text: str) -> str:
     return " ".join(text.replace("<", "").replace(">", "").split())
 
 
-@pytest.mark.parametrize(("name", "method"), METHODS)
-def test_a_page_has_one_name(name, method, sample, client_as):
-    names = names_of(getattr(client_as("superuser"), method)(address(name, sample)))
-    if names is None:
-        return
+def test_a_page_has_one_name(sample, client_as, subtests):
+    for name, method in METHODS:
+        with subtests.test(name, method=method), undone():
+            names = names_of(getattr(client_as("superuser"), method)(address(name, sample)))
+            if names is not None:
+                check_names(name, names)
+
+
+def check_names(page: str, names: Names) -> None:
     called = plain(names.crumbs[-1])
     assert called, names
-    if name not in DOCUMENTS:
+    if page not in DOCUMENTS:
         assert [plain(heading) for heading in names.headings] == [called], names
     assert plain(names.title).startswith(called), names
-    if name in ROUTES_OF_WORLDS - WITHOUT_PLACE:
+    if page in ROUTES_OF_WORLDS - WITHOUT_PLACE:
         (entry,) = names.marked
         assert plain(entry) in map(plain, names.crumbs), names
 
 
-@pytest.mark.parametrize("place", list(all_places()), ids=lambda place: place.label)
-def test_a_place_has_the_name_of_its_entry(place, sample, client_as):
-    if not place.has_page:
-        return
-    names = names_of(client_as("superuser").get(address(place.page, sample)))
-    assert plain(names.crumbs[-1]) == place.label
+def test_a_place_has_the_name_of_its_entry(sample, client_as, subtests):
+    for place in all_places():
+        if place.has_page:
+            with subtests.test(place.label), undone():
+                names = names_of(client_as("superuser").get(address(place.page, sample)))
+                assert plain(names.crumbs[-1]) == place.label
 
 
 def test_every_place_is_the_way_to_its_own_page():
