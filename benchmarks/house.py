@@ -182,7 +182,6 @@ class House:
             for name in addresses
             for other in self.all_arrows.get(name, ())
             if ".rest." not in other
-            and not other.endswith("_noun")  # pages and routes follow from it
         }
 
     @cached_property

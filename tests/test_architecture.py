@@ -167,7 +167,7 @@ def test_a_route_imports_no_page(app):
     for path in modules_below(f"{app}/web"):
         if path.stem.endswith("_rest") or path.parent.name == "rest":
             for name in imports_of(path):
-                assert not name.endswith("_pages"), f"{path} imports {name}"
+                assert not name.endswith(("_pages", "_noun", ".nouns")), f"{path} imports {name}"
 
 
 def test_only_what_a_request_or_a_command_enters_imports_pages_and_routes():

@@ -26,9 +26,9 @@ from annotations.models import Duty, Scope, SemanticTemplate
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.stored_problems import as_json
 from annotations.showing.paging import LARGEST_INTEGER
-from annotations.web.description.predicate_noun import PREDICATES
+from annotations.web.description.predicate_forms import PredicateForm
 from annotations.web.description.predicate_rest import NewPredicate
-from annotations.web.description.production_noun import PRODUCTIONS
+from annotations.web.description.production_forms import ProductionForm
 from annotations.web.description.production_rest import NewProduction
 from annotations.web.description.template_forms import consequences_of_form
 from annotations.web.description.template_rest import TemplateChange, TemplateRoute
@@ -164,7 +164,7 @@ class CheckTemplate(TemplateRoute, Check):
 class CheckProduction(NounRoute, Check):
     """Checks a line of the grammar, and says what storing it would do."""
 
-    noun = PRODUCTIONS
+    noun_form = ProductionForm
 
     @extend_schema(request=ProductionToCheck, responses={200: CheckedProductionSerializer})
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
@@ -190,7 +190,7 @@ class CheckProduction(NounRoute, Check):
 class CheckPredicate(NounRoute, Check):
     """Says a predicate in English, and names the templates that it would break."""
 
-    noun = PREDICATES
+    noun_form = PredicateForm
 
     @extend_schema(request=PredicateToCheck, responses={200: CheckedPredicateSerializer})
     def post(self, request: ApiRequest, **kwargs: object) -> Response:

@@ -6,7 +6,6 @@ from rest_framework import serializers
 
 from annotations.models import EntityClass
 from annotations.web.description.class_forms import EntityClassForm
-from annotations.web.description.class_noun import ENTITY_CLASSES
 from annotations.web.editing.noun_rest import FormFields, NounViewSet
 
 
@@ -39,7 +38,7 @@ class NewEntityClass(EntityClassChange):
 class EntityClassViewSet(NounViewSet):
     """The classes of the entities. Those that every world has stay, and those that something uses."""
 
-    noun = ENTITY_CLASSES
+    noun_form = EntityClassForm
     serializer_class = EntityClassSerializer
     new_serializer = NewEntityClass
     change_serializer = EntityClassChange

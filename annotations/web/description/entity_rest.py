@@ -10,7 +10,7 @@ from annotations.language.forms import MAX_TOKEN
 from annotations.language.texts import MAX_ENTITY
 from annotations.models import Entity
 from annotations.web.description.description_filters import EntityFilters
-from annotations.web.description.entity_noun import ENTITIES
+from annotations.web.description.entity_forms import EntityForm
 from annotations.web.editing.noun_rest import NounViewSet
 from annotations.web.rest.fields import AttributesField, Fields, LineField
 
@@ -48,7 +48,7 @@ class NewEntity(EntityChange):
 class EntityViewSet(NounViewSet):
     """The entities of the ontology."""
 
-    noun = ENTITIES
+    noun_form = EntityForm
     serializer_class = EntitySerializer
     new_serializer = NewEntity
     change_serializer = EntityChange

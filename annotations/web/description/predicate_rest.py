@@ -7,7 +7,6 @@ from rest_framework import serializers
 from annotations.models import Predicate
 from annotations.web.description.description_filters import PredicateFilters
 from annotations.web.description.predicate_forms import PredicateForm
-from annotations.web.description.predicate_noun import PREDICATES
 from annotations.web.editing.noun_rest import FormFields, NounViewSet
 from annotations.web.rest.fields import LineField
 
@@ -42,7 +41,7 @@ class NewPredicate(PredicateChange):
 class PredicateViewSet(NounViewSet):
     """The predicates of the logical forms."""
 
-    noun = PREDICATES
+    noun_form = PredicateForm
     serializer_class = PredicateSerializer
     new_serializer = NewPredicate
     change_serializer = PredicateChange

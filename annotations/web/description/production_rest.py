@@ -8,7 +8,6 @@ from rest_framework import serializers
 from annotations.models import Production, TaskCategory
 from annotations.web.description.description_filters import ProductionFilters
 from annotations.web.description.production_forms import ProductionForm
-from annotations.web.description.production_noun import PRODUCTIONS
 from annotations.web.editing.noun_rest import FormFields, NounViewSet
 from annotations.web.rest.fields import LineField
 from annotations.web.rest.routes import RowsRoute
@@ -43,7 +42,7 @@ class NewProduction(ProductionChange):
 class ProductionViewSet(NounViewSet):
     """The lines of the grammar."""
 
-    noun = PRODUCTIONS
+    noun_form = ProductionForm
     serializer_class = ProductionSerializer
     new_serializer = NewProduction
     change_serializer = ProductionChange

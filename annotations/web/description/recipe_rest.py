@@ -17,8 +17,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of
 from annotations.rows.stored_problems import as_json
 from annotations.web.description.check_rest import Check, FoundSerializer, replaced_field
-from annotations.web.description.recipe_forms import RecipeBookForm
-from annotations.web.description.recipe_noun import PRIMITIVES, RECIPES
+from annotations.web.description.recipe_forms import PrimitiveForm, RecipeBookForm, RecipeForm
 from annotations.web.editing.noun_rest import NounRoute, NounViewSet
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.matching import etag_of, require_match
@@ -60,7 +59,7 @@ class BookRowViewSet(NounViewSet):
 class PrimitiveViewSet(BookRowViewSet):
     """What the robot can do. The name of a primitive changes by renaming, and one that a recipe uses stays."""
 
-    noun = PRIMITIVES
+    noun_form = PrimitiveForm
     serializer_class = PrimitiveSerializer
     sorts = {"position": "position", "name": "name", "id": "pk"}
 
@@ -68,7 +67,7 @@ class PrimitiveViewSet(BookRowViewSet):
 class RecipeViewSet(BookRowViewSet):
     """How the robot does the actions of forms."""
 
-    noun = RECIPES
+    noun_form = RecipeForm
     serializer_class = RecipeSerializer
     sorts = {"position": "position", "action": "action", "id": "pk"}
 
@@ -108,7 +107,7 @@ class CheckBookRow(NounRoute, Check):
     def post(self, request: ApiRequest, **kwargs: object) -> Response:
         sent = self.read(BookRowToCheck)
         replaced = self.replaced(sent)
-        checked = try_row(self.world, self.noun.form.model, sent["text"], replaced, sent["command"])
+        checked = try_row(self.world, self.noun_form.model, sent["text"], replaced, sent["command"])
         example = checked.example
         return Response(
             {
@@ -129,13 +128,13 @@ class CheckBookRow(NounRoute, Check):
 class CheckPrimitive(CheckBookRow):
     """Checks a primitive, and says what the robot does with it."""
 
-    noun = PRIMITIVES
+    noun_form = PrimitiveForm
 
 
 class CheckRecipe(CheckBookRow):
     """Checks a recipe, and says what the robot does by it."""
 
-    noun = RECIPES
+    noun_form = RecipeForm
 
 
 class BookFields(Fields):

@@ -14,7 +14,6 @@ from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 from annotations.web.description.template_forms import TemplateForm
-from annotations.web.description.template_noun import TEMPLATES
 from annotations.web.editing.noun_rest import FormFields, NounRoute, NounViewSet
 from annotations.web.rest.fields import LineField
 from annotations.web.rest.problem_details import ProblemItemSerializer
@@ -72,7 +71,7 @@ def category_called(world: World, name: str) -> TaskCategory:
 
 
 class TemplateRoute(NounRoute):
-    noun = TEMPLATES
+    noun_form = TemplateForm
 
     def rows(self) -> QuerySet[Any]:
         return super().rows().select_related("author", "grammar__world")

@@ -15,6 +15,7 @@ from rest_framework.serializers import BaseSerializer
 from annotations.editing.edits import add, change, delete
 from annotations.language.texts import Refusal
 from annotations.models import Duty, Editable
+from annotations.rows.row_kinds import kind_of_model
 from annotations.rows.stored_problems import as_json
 from annotations.web.editing.kinds_of_rows import DELETING
 from annotations.web.editing.noun_forms import NounForm
@@ -27,24 +28,23 @@ from annotations.web.rest.routes import RowsViewSet, WorldRoute
 
 
 class NounRoute(WorldRoute):
-    """A route about rows of a noun."""
+    """A route about the rows of a noun: those that the form of its page edits."""
 
-    noun: ClassVar[Any]  # a Noun; Any for what its own form has
+    noun_form: ClassVar[Any]  # a subclass of NounForm; Any for what it has of its own
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if hasattr(cls, "noun"):
-            cls.model = cls.noun.form.model
+        if hasattr(cls, "noun_form"):
+            cls.model = cls.noun_form.model
 
     def rows(self) -> QuerySet[Any]:
-        rows: QuerySet[Any] = self.noun.kind.rows_of(self.world)
-        return rows
+        return kind_of_model(self.noun_form.model).rows_of(self.world)
 
     def form_of(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
         """Return the form of the page, bound to what was sent over the values of ``row``."""
-        form = self.noun.form
-        stored = form.shown(row) if row else {}
-        return form(self.world, row, {**stored, **form.typed(sent)}, initial=stored)
+        stored = self.noun_form.shown(row) if row else {}
+        given = {**stored, **self.noun_form.typed(sent)}
+        return self.noun_form(self.world, row, given, initial=stored)
 
     def valid_form(self, row: Any | None, sent: Mapping[str, Any]) -> Any:
         form: NounForm = self.form_of(row, sent)

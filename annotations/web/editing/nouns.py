@@ -1,7 +1,7 @@
 """Kinds of rows that people list, add, change and undo, each declared once.
 
-From a ``Noun`` come its pages with their addresses, and its routes (``noun_rest``). A page that is more than its noun
-is written out beside the declaration.
+From a ``Noun`` come its pages with their addresses; its routes read what is sent by the same form (``noun_rest``). A
+page that is more than its noun is written out beside the declaration.
 """
 
 from __future__ import annotations
