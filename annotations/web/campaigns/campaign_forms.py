@@ -73,6 +73,7 @@ def parameter_field(label: str, help_text: str) -> forms.RegexField:
         rf"\A{PARAMETER}\Z",  # Django looks anywhere in the value
         label=label,
         required=False,
+        max_length=40,
         help_text=help_text,
         error_messages={
             "invalid": "Write the name of a parameter, such as participant_id: letters, digits and _ . -"

@@ -25,26 +25,12 @@ from annotations.language.texts import ENCODINGS
 from annotations.models import Campaign, Contributor, Duty, Job, Scope
 from annotations.models.campaigns import (
     LONGEST_CAMPAIGN_NAME,
-    MOST_CHARACTERS_OF_TEXT,
     Balance,
-    Wording,
     balance_choices,
-    wording_choices,
 )
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
 from annotations.web.campaigns.campaign_forms import (
-    CONSENT,
-    EXAMPLES,
-    INTRODUCTION,
-    MOST_FREE_COMMANDS,
-    MOST_MINUTES,
-    MOST_PROMPTS_PER_FORM,
-    MOST_REWRITES,
-    MOST_SUBMISSIONS,
-    MOST_TASKS_PER_HOUR,
-    PARAMETER,
-    THANKS,
     CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
@@ -53,7 +39,8 @@ from annotations.web.campaigns.campaign_forms import (
     values_of,
 )
 from annotations.web.campaigns.campaign_links import link_of
-from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.fields import LineField
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.negotiation import AnyType
 from annotations.web.rest.parsing import FilesParser
@@ -97,93 +84,39 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
         return link_of(self.context["request"], row)
 
 
-class MarkdownField(serializers.CharField):
-    def __init__(self, default: Any = serializers.empty, **options: Any):
-        options |= {"max_length": MOST_CHARACTERS_OF_TEXT, "default": default}
-        super().__init__(allow_blank=True, trim_whitespace=False, **options)
-
-
-class OfMarket(Fields):
+class OfMarket(FormFields):
     """What a crowd market and its people want to know; nothing of it is needed."""
 
-    currency = LineField(max_length=8, allow_blank=True, required=False)
-    completion_code = LineField(max_length=40, allow_blank=True, required=False)
-    return_url = serializers.URLField(
-        max_length=500,
-        allow_blank=True,
-        required=False,
-        help_text="https; {assignment} is filled in",
-    )
-    run_by = LineField(max_length=200, allow_blank=True, required=False)
-    contact = LineField(max_length=200, allow_blank=True, required=False)
-    minutes = serializers.IntegerField(
-        min_value=1, max_value=MOST_MINUTES, allow_null=True, required=False
-    )
-    worker_parameter = serializers.RegexField(
-        f"^({PARAMETER})?$", max_length=40, allow_blank=True, required=False
-    )
-    assignment_parameter = serializers.RegexField(
-        f"^({PARAMETER})?$", max_length=40, allow_blank=True, required=False
-    )
-    frame_origins = LineField(
-        max_length=500, allow_blank=True, required=False, help_text="separated by blanks"
-    )
-    screening_question = LineField(
-        max_length=300, allow_blank=True, required=False, help_text="who answers no gets no task"
-    )
-    screened_out_code = LineField(max_length=40, allow_blank=True, required=False)
-    screened_out_url = serializers.URLField(max_length=500, allow_blank=True, required=False)
+    class Meta:
+        form = CampaignForm
+        fields = ("currency", "run_by", "contact", "minutes", *CampaignForm.MARKET)
 
 
 class NewCampaign(OfMarket):
     """What people are asked. Without ``task_categories`` all commands are drawn from; texts are Markdown."""
 
-    name = LineField(max_length=LONGEST_CAMPAIGN_NAME)
     task_categories = serializers.ListField(child=LineField(max_length=60), default=list)
-    wording = serializers.ChoiceField(choices=wording_choices(), default=Wording.COMMAND)
     balance = serializers.ChoiceField(
         choices=balance_choices(),
         default=Balance.FORMS,
-        help_text="what gets ``prompts_per_form`` prompts, and equally many contributors",
+        help_text="What gets ``prompts_per_form`` prompts, and equally many contributors.",
     )
-    target_per_form = serializers.IntegerField(min_value=1, max_value=1_000, default=10)
-    prompts_per_form = serializers.IntegerField(
-        min_value=1, max_value=MOST_PROMPTS_PER_FORM, default=3
-    )
-    task_size = serializers.IntegerField(min_value=1, max_value=MOST_REWRITES, default=12)
-    free_commands = serializers.IntegerField(min_value=0, max_value=MOST_FREE_COMMANDS, default=2)
-    check_every = serializers.IntegerField(min_value=0, max_value=MOST_REWRITES, default=0)
-    taboo_words = serializers.IntegerField(min_value=0, max_value=10, default=0)
-    allows_model_help = serializers.BooleanField(default=False)
-    allows_retake = serializers.BooleanField(default=False)
-    price = serializers.DecimalField(7, 2, min_value=0, allow_null=True, default=None)
-    ends_at = serializers.DateField(allow_null=True, default=None, help_text="the last day")
-    most_submissions = serializers.IntegerField(
-        min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True, default=None
-    )
-    most_per_hour = serializers.IntegerField(
-        min_value=1, max_value=MOST_TASKS_PER_HOUR, default=1_000, help_text="tasks begun"
-    )
-    seed = serializers.IntegerField(min_value=0, max_value=2**31 - 1, default=0)
-    introduction = MarkdownField(INTRODUCTION)
-    examples = MarkdownField(EXAMPLES)
-    consent = MarkdownField(CONSENT)
-    thanks = MarkdownField(THANKS)
+
+    class Meta:
+        form = CampaignForm
+        fields = (
+            *("name", *CampaignForm.TASK, *CampaignForm.WHAT, *CampaignForm.MAY),
+            *("price", "ends_at", "most_submissions", "most_per_hour", *CampaignForm.TEXTS),
+        )
+        begins = True
 
 
 class CampaignChange(OfMarket):
     """What may be changed after the launch. The consent stays once somebody has agreed to it."""
 
-    price = serializers.DecimalField(7, 2, min_value=0, allow_null=True)
-    ends_at = serializers.DateField(allow_null=True, help_text="the last day")
-    most_submissions = serializers.IntegerField(
-        min_value=1, max_value=MOST_SUBMISSIONS, allow_null=True
-    )
-    most_per_hour = serializers.IntegerField(min_value=1, max_value=MOST_TASKS_PER_HOUR)
-    introduction = MarkdownField()
-    examples = MarkdownField()
-    consent = MarkdownField()
-    thanks = MarkdownField()
+    class Meta:
+        form = CampaignForm
+        fields = ("price", "ends_at", "most_submissions", "most_per_hour", *CampaignForm.TEXTS)
 
 
 class TaskQuery(serializers.Serializer[Any]):

@@ -28,7 +28,7 @@ from annotations.web.corpus.split_filters import (
     SplitFilters,
 )
 from annotations.web.corpus.split_forms import SplitForm
-from annotations.web.rest.fields import Fields
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
@@ -73,20 +73,22 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
         return PartCountSerializer(counts, many=True).data
 
 
-class NewSplit(Fields):
+class NewSplit(FormFields):
     """``proportions`` are the shares of train, validation and test, which sum to 1. With ``tests_on_models``
     what language models wrote is in validation and test too."""
 
-    name = serializers.SlugField(max_length=80)
     criterion = serializers.ChoiceField(choices=criterion_choices(), default=Criterion.COMMAND)
-    seed = serializers.IntegerField(min_value=0, max_value=2**32 - 1, default=0)
     proportions = serializers.ListField(
         child=serializers.FloatField(min_value=0, max_value=1),
         min_length=3,
         max_length=3,
         default=list(DEFAULT_PROPORTIONS),
     )
-    tests_on_models = serializers.BooleanField(default=False)
+
+    class Meta:
+        form = SplitForm
+        fields = ("name", "seed", "tests_on_models")
+        begins = True
 
 
 class SplitViewSet(RowsViewSet):

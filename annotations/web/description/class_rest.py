@@ -6,7 +6,8 @@ from rest_framework import serializers
 
 from annotations.models import EntityClass
 from annotations.web.description.class_forms import EntityClassForm
-from annotations.web.editing.noun_rest import FormFields, NounViewSet
+from annotations.web.editing.noun_rest import NounViewSet
+from annotations.web.rest.form_fields import FormFields
 
 
 class EntityClassSerializer(serializers.ModelSerializer[EntityClass]):

@@ -7,8 +7,9 @@ from rest_framework import serializers
 from annotations.models import Predicate
 from annotations.web.description.description_filters import PredicateFilters
 from annotations.web.description.predicate_forms import PredicateForm
-from annotations.web.editing.noun_rest import FormFields, NounViewSet
+from annotations.web.editing.noun_rest import NounViewSet
 from annotations.web.rest.fields import LineField
+from annotations.web.rest.form_fields import FormFields
 
 
 class PredicateSerializer(serializers.ModelSerializer[Predicate]):

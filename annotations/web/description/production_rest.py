@@ -8,8 +8,9 @@ from rest_framework import serializers
 from annotations.models import Production, TaskCategory
 from annotations.web.description.description_filters import ProductionFilters
 from annotations.web.description.production_forms import ProductionForm
-from annotations.web.editing.noun_rest import FormFields, NounViewSet
+from annotations.web.editing.noun_rest import NounViewSet
 from annotations.web.rest.fields import LineField
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.routes import RowsRoute
 
 

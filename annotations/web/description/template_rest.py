@@ -14,8 +14,9 @@ from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 from annotations.web.description.template_forms import TemplateForm
-from annotations.web.editing.noun_rest import FormFields, NounRoute, NounViewSet
+from annotations.web.editing.noun_rest import NounRoute, NounViewSet
 from annotations.web.rest.fields import LineField
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.problem_details import ProblemItemSerializer
 
 

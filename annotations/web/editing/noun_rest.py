@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from http import HTTPStatus
 from typing import Any, ClassVar
 
-from django import forms
 from django.db.models import QuerySet
-from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.serializers import BaseSerializer
 
@@ -19,7 +17,6 @@ from annotations.rows.row_kinds import kind_of_model
 from annotations.rows.stored_problems import as_json
 from annotations.web.editing.kinds_of_rows import DELETING
 from annotations.web.editing.noun_forms import NounForm
-from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once, slot_of
 from annotations.web.rest.matching import etag_of
 from annotations.web.rest.permissions import ApiRequest
@@ -95,40 +92,3 @@ class NounViewSet(NounRoute, RowsViewSet):
         """Respond with the stored row and the checker's problems on it."""
         shown = {"problems": list(map(as_json, remarks)), **self.get_serializer(row).data}
         return Response(shown, status=status, headers={"ETag": etag_of(row, shown)})
-
-
-class FormFields(Fields):
-    """A body with fields of a form: bounds, choices and words are those of the form.
-
-    ``Meta.form`` and ``Meta.fields`` name them. A field that is declared takes the place of the form's, where JSON has
-    it otherwise, such as a list for lines of text.
-    """
-
-    class Meta:
-        form: type[forms.Form]
-        fields: Sequence[str]
-
-    def get_fields(self) -> dict[str, Any]:
-        declared = super().get_fields()
-        of_form = self.Meta.form.base_fields
-        read = {name: _sent(of_form[name]) for name in self.Meta.fields if name not in declared}
-        return {**read, **declared}
-
-
-def _sent(field: forms.Field) -> serializers.Field[Any, Any, Any, Any]:
-    """Return how JSON has what the field of a form takes."""
-    options: dict[str, Any] = {"help_text": str(field.help_text)} if field.help_text else {}
-    if not field.required:
-        options["required"] = False
-    if choices := [*getattr(field, "choices", ())]:
-        return serializers.ChoiceField(choices=choices, **options)
-    if isinstance(field, forms.IntegerField):
-        options |= {"min_value": field.min_value, "max_value": field.max_value}
-        return serializers.IntegerField(**options)
-    if isinstance(field, forms.BooleanField):
-        return serializers.BooleanField(**options)
-    if not field.required:
-        options["allow_blank"] = True
-    is_long = isinstance(field.widget, forms.Textarea)
-    kind: Callable[..., serializers.CharField] = serializers.CharField if is_long else LineField
-    return kind(max_length=getattr(field, "max_length", None), **options)

@@ -16,11 +16,12 @@ from annotations.language.texts import Refusal
 from annotations.models import Duty, Invitation, Membership, Scope, User
 from annotations.models.worlds import Role, role_choices
 from annotations.people.audit_log import note
-from annotations.people.invitations import MOST_DAYS, MOST_PLACES, join
+from annotations.people.invitations import join
 from annotations.people.members import add_roles, role_names, set_roles
 from annotations.people.rate_limits import JOINING
 from annotations.web.people.member_forms import OVER, TOO_OFTEN, InvitationForm, MemberForm
 from annotations.web.rest.fields import Fields, LineField
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
@@ -137,13 +138,15 @@ class IssuedInvitation(InvitationSerializer):
         fields = [*InvitationSerializer.Meta.fields, "link", "key"]
 
 
-class NewInvitation(Fields):
+class NewInvitation(FormFields):
     """What a link gives, to how many people, and for how many days. ``note`` is for the admins."""
 
     roles = roles_field(min_length=1)
-    places = serializers.IntegerField(min_value=1, max_value=MOST_PLACES, default=1)
-    days = serializers.IntegerField(min_value=1, max_value=MOST_DAYS, default=7)
-    note = LineField(max_length=80, allow_blank=True, default="")
+
+    class Meta:
+        form = InvitationForm
+        fields = ("places", "days", "note")
+        begins = True
 
 
 class InvitationViewSet(RowsViewSet):

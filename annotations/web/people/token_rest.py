@@ -16,12 +16,11 @@ from rest_framework.mixins import ListModelMixin
 from rest_framework.response import Response
 
 from annotations.models import ApiToken, LogInSession, Scope, User
-from annotations.models.people import scope_choices
 from annotations.people.accounts import end_session, sessions_of
 from annotations.people.audit_log import note
 from annotations.web.people.member_rest import UNCACHED
-from annotations.web.people.token_forms import MOST_DAYS, TokenForm
-from annotations.web.rest.fields import Fields, LineField
+from annotations.web.people.token_forms import TokenForm
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import Retrieved, Route, SingleRow, SiteViewSet
@@ -49,13 +48,14 @@ class IssuedToken(TokenSerializer):
         fields = [*TokenSerializer.Meta.fields, "key"]
 
 
-class NewToken(Fields):
+class NewToken(FormFields):
     """What a token is for, what it may be used for, and how many days. A token cannot make one with a wider
     scope or a longer life than its own."""
 
-    name = LineField(max_length=80)
-    scope = serializers.ChoiceField(choices=scope_choices(), default=Scope.READ)
-    days = serializers.IntegerField(min_value=1, max_value=MOST_DAYS, default=90)
+    class Meta:
+        form = TokenForm
+        fields = ("name", "scope", "days")
+        begins = True
 
 
 class TokenViewSet(ListModelMixin, Retrieved, SiteViewSet):

@@ -8,27 +8,26 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.corpus import LEAST_FOLDS, MOST_FOLDS
 from annotations.models import AuditFinding, Duty, JobKind
-from annotations.web.rest.fields import Fields
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.labelling.audit_job import request_audit
-from parser_service.labelling.out_of_fold import AUDITORS
 from parser_service.labelling.precision import precision_of
-from parser_service.web.labelling.audit_forms import MOST_QUEUED, AuditForm
+from parser_service.web.labelling.audit_forms import AuditForm
 
 
-class NewAudit(Fields):
+class NewAudit(FormFields):
     """What answers for pairs that it did not see, in how many parts, and how many labels people are asked
     about."""
 
-    parser = serializers.ChoiceField(choices=list(AUDITORS))
-    folds = serializers.IntegerField(min_value=LEAST_FOLDS, max_value=MOST_FOLDS, default=5)
-    to_queue = serializers.IntegerField(min_value=0, max_value=MOST_QUEUED, default=50)
+    class Meta:
+        form = AuditForm
+        fields = ("parser", "folds", "to_queue")
+        begins = True
 
 
 class PrecisionSerializer(serializers.Serializer[Any]):

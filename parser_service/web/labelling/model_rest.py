@@ -4,38 +4,28 @@ from __future__ import annotations
 
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
-from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.language.corpus import INSTRUCTIONS, LONGEST_INSTRUCTIONS
 from annotations.models import Campaign, Duty
-from annotations.web.rest.fields import Fields
+from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.labelling.model_contributor import request_paraphrases
-from parser_service.parsers.llm.protocol import MOST_NAME
 from parser_service.web.labelling.model_forms import (
-    LARGEST_SEED,
-    MOST_REQUESTS,
-    MOST_WORDINGS,
     ModelForm,
 )
 
 
-class NewModelRewrites(Fields):
+class NewModelRewrites(FormFields):
     """Which model is asked for rewrites, and with what."""
 
-    model = serializers.CharField(max_length=MOST_NAME)
-    wordings = serializers.IntegerField(min_value=1, max_value=MOST_WORDINGS, default=3)
-    budget = serializers.IntegerField(min_value=1, max_value=MOST_REQUESTS, default=500)
-    temperature = serializers.FloatField(min_value=0, max_value=2, default=0.8)
-    seed = serializers.IntegerField(min_value=0, max_value=LARGEST_SEED, default=0)
-    instructions = serializers.CharField(
-        max_length=LONGEST_INSTRUCTIONS, default=INSTRUCTIONS, trim_whitespace=False
-    )
+    class Meta:
+        form = ModelForm
+        fields = tuple(ModelForm.base_fields)
+        begins = True
 
 
 class ModelRewrites(WorldRoute):
