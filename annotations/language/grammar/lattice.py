@@ -38,6 +38,7 @@ class Lattice:
         self._from: list[defaultdict[str, list[Arc]]] = [defaultdict(list) for _ in range(end + 1)]
         for arc in arcs:
             self._from[arc.start][arc.word].append(arc)
+        self._words = [tuple(by_word) for by_word in self._from]
 
     @classmethod
     def of_words(cls, words: Sequence[str]) -> Self:
@@ -49,9 +50,14 @@ class Lattice:
         """Return the arcs from a place that read ``word``."""
         return self._from[place].get(word, ())
 
-    def words_from(self, place: int) -> Iterable[str]:
+    def words_from(self, place: int) -> Sequence[str]:
         """Return what the arcs from a place read."""
-        return self._from[place].keys()
+        return self._words[place]
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """What its arcs read."""
+        return frozenset(word for words in self._words for word in words)
 
     @cached_property
     def n_arcs(self) -> int:

@@ -8,8 +8,9 @@ enough for grammars without recursion).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import TypeAlias
 
 from annotations.language.forms import Choice, Nonterminal, Symbols, Text, Wildcard
@@ -33,6 +34,8 @@ Alternative: TypeAlias = "tuple[Item, ...]"
 
 # A rule that can begin with more words than this is not looked up by its first word: the tables would be too large.
 MOST_FIRST_WORDS = 1_000
+NOTHING: frozenset[str] = frozenset()
+NOWHERE: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,21 +44,23 @@ class ChartRule:
 
     ``by_word`` maps a word to the alternatives that can begin with it. ``always`` are tried at
     every word: they can be empty, or can begin with more than ``MOST_FIRST_WORDS`` words. ``first``
-    are the words that the rule can begin with (None: too many), ``names`` the nonterminals inside, and
-    ``wildcards`` the names of the wildcards inside, where runs have leaves.
+    are the words that the rule can begin with (None: too many), ``needed`` those that are in all it becomes,
+    ``names`` the nonterminals inside, and ``wildcards`` the names of the wildcards inside, where runs have leaves.
     """
 
     name: str
     by_word: dict[str, tuple[Alternative, ...]]
     always: tuple[Alternative, ...]
     first: frozenset[str] | None
+    needed: frozenset[str]
     can_be_empty: bool
     names: frozenset[str]
     wildcards: frozenset[str]
     alternatives: tuple[Alternative, ...]
 
     def candidates(self, word: str) -> tuple[Alternative, ...]:
-        return self.by_word.get(word, ()) + self.always
+        found = self.by_word.get(word, ())
+        return found + self.always if self.always else found
 
 
 class RuleBook:
@@ -93,6 +98,10 @@ class RuleBook:
         """Add a rule for a sequence that is not in any production, and return its number."""
         return self._add("", [self._items(self._expander.parts(pattern))])
 
+    def add_choice(self, rules: Iterable[int]) -> int:
+        """Add a rule that is one of several others, and return its number."""
+        return self._add("", [(rule,) for rule in rules])
+
     def _items(self, parts: tuple[Part[str] | Part[Text | Wildcard], ...]) -> Alternative:
         items = (_run(part) if isinstance(part, tuple) else self.number(part) for part in parts)
         return tuple(item for item in items if isinstance(item, int) or item.words)
@@ -125,11 +134,24 @@ class RuleBook:
         known = None if has_many else frozenset(first)
         self.rules.append(
             ChartRule(
-                *(name, table, tuple(always), known, is_nullable, frozenset(names)),
-                *(frozenset(wildcards), tuple(alternatives)),
+                *(name, table, tuple(always), known, self._needed(alternatives), is_nullable),
+                *(frozenset(names), frozenset(wildcards), tuple(alternatives)),
             )
         )
         return len(self.rules) - 1
+
+    def _needed(self, alternatives: Iterable[Alternative]) -> frozenset[str]:
+        """Return the words that stand in everything that one of some alternatives becomes."""
+        of_each = (
+            frozenset().union(
+                *(
+                    self.rules[item].needed if isinstance(item, int) else item.words
+                    for item in items
+                )
+            )
+            for items in alternatives
+        )
+        return reduce(frozenset.intersection, of_each, next(of_each, NOTHING))
 
     def _first(self, alternative: Alternative) -> tuple[set[str] | None, bool]:
         """Return the words it can begin with (None: too many) and whether it can be empty."""
@@ -168,16 +190,22 @@ class Chart:
         if isinstance(item, Run):
             return self.lattice.ends(item.words, start)
         key = (item, start)
-        if key not in self._ends:
-            self._ends[key] = frozenset().union(
-                *(self._ends_of(alternative, start) for alternative in self.candidates(item, start))
-            )
-        return self._ends[key]
+        found = self._ends.get(key)
+        if found is None:
+            found = NOWHERE
+            for alternative in self.candidates(item, start):
+                found |= self._ends_of(alternative, start)
+            self._ends[key] = found
+        return found
+
+    def has_needed(self, rule: int) -> bool:
+        """Return whether the lattice has all the words that a rule cannot do without, wherever they stand."""
+        return self.rules[rule].needed <= self.lattice.words
 
     def candidates(self, rule: int, start: int) -> Sequence[Alternative]:
         """Return the alternatives of a rule that can begin at ``start``, each once."""
         book = self.rules[rule]
-        words = list(self.lattice.words_from(start))
+        words = self.lattice.words_from(start)
         if len(words) == 1:
             return book.candidates(words[0])
         beginning = (each for word in words for each in book.by_word.get(word, ()))

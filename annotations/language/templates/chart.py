@@ -13,7 +13,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from annotations.language.forms import Constant, Form, Text, Wildcard, canonical_text, walk
 from annotations.language.grammar import (
@@ -134,11 +134,14 @@ class _TemplateSet:
             for name, lines in self.rules.lines_of.items()
         }
         self.book = RuleBook(expander, patterns)
-        self.roots = [
-            (index, _Rule(self, template, self.book.add_pattern(template.pattern)))
-            for index, template in enumerate(category.templates)
-            if not template.nonterminal
-        ]
+        # The rule of each template of a whole command, and the choice among them, which finds those that can begin
+        # with a word.
+        self.roots: dict[int, tuple[int, _Rule]] = {}
+        for index, template in enumerate(category.templates):
+            if not template.nonterminal:
+                rule = self.book.add_pattern(template.pattern)
+                self.roots[rule] = index, _Rule(self, template, rule)
+        self.root = self.book.add_choice(self.roots)
         self.lines = {
             rule: _Rule(self, line, rule, place)
             for name, rules in self.book.line_rules.items()
@@ -158,21 +161,23 @@ class _TemplateSet:
 
     @property
     def beginnings(self) -> frozenset[str]:
-        rules = (self.book.rules[root.number] for _, root in self.roots)
-        return frozenset().union(*(each.first or () for each in rules))
+        return frozenset().union(*(self.book.rules[rule].first or () for rule in self.roots))
 
     def spans(self, lattice: Lattice, budget: Budget) -> Iterator[tuple[int, int]]:
         chart = Chart(self.book, lattice, budget)
         for start in range(lattice.end):
-            for _, root in self.roots:
-                for end in chart.ends(root.number, start):
-                    if start < end:
-                        yield start, end
+            for end in chart.ends(self.root, start):
+                if start < end:
+                    yield start, end
 
     def parse(self, lattice: Lattice, budget: Budget) -> Iterator[ChartDerivation]:
         forest = _Forest(self, lattice, budget)
-        for index, root in reversed(self.roots):
-            if lattice.end in forest.chart.ends(root.number, 0):
+        chart = forest.chart
+        possible = {item for (item,) in chart.candidates(self.root, 0)}
+        for rule in reversed(self.roots):  # later templates first
+            is_possible = rule in possible and chart.has_needed(rule)
+            if is_possible and lattice.end in chart.ends(rule, 0):
+                index, root = self.roots[rule]
                 for form in forest.forms(root, 0, lattice.end):
                     text = canonical_text(form.anonymized)
                     yield ChartDerivation(
@@ -206,7 +211,10 @@ class _Rule:
 
 @dataclass(frozen=True, slots=True)
 class _Filled:
-    """The form of a template or a line for some words: with class tokens, and with numbered arcs as slots."""
+    """The form of a template or a line for some words: with class tokens, and with numbered arcs as slots.
+
+    The two are one where no arc has a number.
+    """
 
     anonymized: Form
     aligned: Form
@@ -214,13 +222,16 @@ class _Filled:
     cost: int
     path: Path = field(default=(), compare=False)
 
+    @property
+    def is_plain(self) -> bool:
+        return self.aligned is self.anonymized
+
 
 # What a nonterminal became: a form, or the leaves that stand for its words. The number of a wildcard is its arc's.
 Value: TypeAlias = "_Filled | Leaves"
 
 
-@dataclass(frozen=True, slots=True)
-class _Reading:
+class _Reading(NamedTuple):
     """One way to read what is between two places.
 
     ``bound`` are the values of the nonterminals that the form mentions, by name; ``slots`` the wildcards that
@@ -233,27 +244,47 @@ class _Reading:
     slots: tuple[tuple[Wildcard, int], ...] = ()
     inner: tuple[tuple[Wildcard, int], ...] = ()
     leaves: Leaves = ()
-    path: Path = field(default=(), compare=False)
+    path: Path = ()
 
     @property
     def said(self) -> object:
         """All but the cost and the path: of two readings that say the same, the cheaper one counts."""
         return self.bound, self.slots, self.inner, self.leaves
 
+    def read(self, arc: Arc, leaf: Text | Wildcard, is_slot: bool, keeps: bool) -> _Reading:
+        """Return this reading with an arc after it, which reads a leaf of the grammar."""
+        slots, leaves = self.slots, self.leaves
+        if isinstance(leaf, Wildcard):
+            has_number = arc.number >= 0
+            if is_slot and has_number:
+                slots = (*slots, (leaf, arc.number))
+            # Its number in the grammar is none of an arc.
+            leaf = replace(leaf, id=arc.number if has_number else None) if keeps else leaf
+        if keeps:
+            leaves = (*leaves, leaf)
+        cost = self.cost + arc.cost
+        return _Reading(cost, self.bound, slots, self.inner, leaves, (self.path, arc))
+
     def then(self, other: _Reading) -> _Reading | None:
         """Return both, one after the other; None where they disagree about the words of a nonterminal."""
-        bound = dict(self.bound)
-        for name, value in other.bound:
-            if _words(bound.setdefault(name, value)) != _words(value):
-                return None
+        bound = self.bound or other.bound
+        if self.bound and other.bound:
+            values = dict(self.bound)
+            for name, value in other.bound:
+                if _words(values.setdefault(name, value)) != _words(value):
+                    return None
+            bound = tuple(sorted(values.items(), key=_name))
         return _Reading(
             self.cost + other.cost,
-            tuple(sorted(bound.items(), key=_name)),
+            bound,
             self.slots + other.slots,
             self.inner + other.inner,
             self.leaves + other.leaves,
             (self.path, other.path),
         )
+
+
+_Reached: TypeAlias = "dict[int, list[_Reading]]"  # by where they end
 
 
 class _Forest:
@@ -339,55 +370,50 @@ class _Forest:
         self, asker: _Rule, alternative: Alternative, start: int, end: int, keeps: bool
     ) -> list[_Reading]:
         """Return the readings of the items of an alternative, one after the other."""
-        reached: dict[int, list[_Reading]] = {start: [_Reading()]}
+        reached: _Reached = {start: [_Reading()]}
         for item in alternative:
-            steps: Iterable[int | Text | Wildcard] = (
-                item.leaves if isinstance(item, Run) else (item,)
-            )
-            for step in steps:
-                following: defaultdict[int, list[_Reading]] = defaultdict(list)
-                for place, before in reached.items():
-                    for stop, readings in self._after(asker, step, place, keeps, end):
-                        self.budget.spend(STEPS_PER_JOIN * len(before) * len(readings))
-                        joined = (one.then(other) for one in before for other in readings)
-                        following[stop] += (each for each in joined if each is not None)
-                reached = {place: _best(asker, each) for place, each in following.items()}
+            if isinstance(item, int):
+                reached = self._through_rule(asker, item, reached, end, keeps)
+                continue
+            for leaf in item.leaves:
+                reached = self._through_leaf(asker, leaf, reached, end, keeps)
         return reached.get(end, [])
 
-    def _after(
-        self, asker: _Rule, step: int | Text | Wildcard, place: int, keeps: bool, end: int
-    ) -> Iterator[tuple[int, list[_Reading]]]:
-        """Yield where a rule or a leaf that begins at ``place`` can end, up to ``end``, and how it is read."""
-        if isinstance(step, int):
-            for stop in self.chart.ends(step, place):
+    def _through_rule(
+        self, asker: _Rule, rule: int, reached: _Reached, end: int, keeps: bool
+    ) -> _Reached:
+        following: defaultdict[int, list[_Reading]] = defaultdict(list)
+        for place, before in reached.items():
+            for stop in self.chart.ends(rule, place):
                 if stop <= end:
-                    yield stop, self._of_rule(asker, step, place, stop, keeps)
-            return
-        word = step.value if isinstance(step, Text) else step.token
-        for arc in self.lattice.arcs(place, word):
-            if arc.end <= end:
-                leaf: Text | Wildcard = step
-                slots: tuple[tuple[Wildcard, int], ...] = ()
-                if isinstance(step, Wildcard):
-                    # Its number in the grammar is none of an arc.
-                    leaf = replace(step, id=arc.number if arc.number >= 0 else None)
-                    if arc.number >= 0 and step.name in asker.wildcards:
-                        slots = ((step, arc.number),)
-                leaves = (leaf,) if keeps else ()
-                yield (
-                    arc.end,
-                    [_Reading(arc.cost, slots=slots, leaves=leaves, path=arc)],
-                )
+                    readings = self._of_rule(asker, rule, place, stop, keeps)
+                    self.budget.spend(STEPS_PER_JOIN * len(before) * len(readings))
+                    joined = (one.then(other) for one in before for other in readings)
+                    following[stop] += (each for each in joined if each is not None)
+        return {place: _best(asker, each) for place, each in following.items()}
+
+    def _through_leaf(
+        self, asker: _Rule, leaf: Text | Wildcard, reached: _Reached, end: int, keeps: bool
+    ) -> _Reached:
+        word = leaf.value if isinstance(leaf, Text) else leaf.token
+        is_slot = isinstance(leaf, Wildcard) and leaf.name in asker.wildcards
+        following: defaultdict[int, list[_Reading]] = defaultdict(list)
+        for place, before in reached.items():
+            for arc in self.lattice.arcs(place, word):
+                if arc.end <= end:
+                    self.budget.spend(STEPS_PER_JOIN * len(before))
+                    following[arc.end] += (one.read(arc, leaf, is_slot, keeps) for one in before)
+        return {place: _best(asker, each) for place, each in following.items()}
 
 
-def _best(asker: _Rule, readings: Sequence[_Reading]) -> list[_Reading]:
+def _best(asker: _Rule, readings: list[_Reading]) -> list[_Reading]:
     """Return the best readings that say different things, the best one first.
 
     Those that bind other nonterminals, or a nonterminal that comes again with other words, are no rivals: one of
     them may be of no use further up.
     """
     if len(readings) <= 1:
-        return list(readings)
+        return readings
     groups: defaultdict[object, dict[object, _Reading]] = defaultdict(dict)
     for reading in _ranked(asker, readings):
         names = tuple(name for name, _ in reading.bound)
@@ -420,9 +446,10 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
     """Return the form of a template for a reading; None where the words for a predicate are no name."""
     values = dict(reading.bound)
     form = rule.template.form
-    slots = _SlotArcs(reading)
+    filled = [value for value in values.values() if isinstance(value, _Filled)]
+    is_plain = not reading.slots and not reading.inner and all(each.is_plain for each in filled)
     try:
-        anonymized = fill_anonymized(
+        anonymized = aligned = fill_anonymized(
             form,
             {
                 name: Composed(value.anonymized, ())
@@ -431,13 +458,14 @@ def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
                 for name, value in values.items()
             },
         )
-        aligned = fill_intact(
-            map_slots(form, slots.of),
-            {
-                name: Composed(value.aligned, ()) if isinstance(value, _Filled) else value
-                for name, value in values.items()
-            },
-        )
+        if not is_plain:
+            aligned = fill_intact(
+                map_slots(form, _SlotArcs(reading).of),
+                {
+                    name: Composed(value.aligned, ()) if isinstance(value, _Filled) else value
+                    for name, value in values.items()
+                },
+            )
     except LanguageError:
         return None
     inner = tuple(_words(values[name]) for name in rule.names)
@@ -477,6 +505,8 @@ def _without_number(slots: Iterable[tuple[Wildcard, int]]) -> dict[str, list[int
 
 def _arcs_of(form: _Filled) -> tuple[int | None, ...]:
     """Return the arc of each class token of the form, in order; nothing where none has one."""
+    if form.is_plain:
+        return ()
     pairs = zip(walk(form.anonymized), walk(form.aligned), strict=True)
     arcs = tuple(
         aligned.id if isinstance(aligned, Wildcard) else None
