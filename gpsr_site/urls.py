@@ -5,6 +5,7 @@ from django.contrib import admin
 from django.contrib.auth.views import LogoutView
 from django.urls import URLPattern, URLResolver, include, path
 
+from annotations.people.access import WRITE, plain_view
 from annotations.rest_urls import urlpatterns as corpus_routes
 from annotations.web.campaigns import public_pages
 from annotations.web.editing import comment_pages
@@ -29,7 +30,7 @@ ADMINISTRATION = [
 urlpatterns = [
     path("", home, name="home"),
     path("login/", LogIn.as_view(), name="login"),
-    path("logout/", LogoutView.as_view(), name="logout"),
+    path("logout/", plain_view(WRITE, does="log out")(LogoutView.as_view()), name="logout"),
     path("password/", ChangePassword.as_view(), name="password"),
     path("log/", site_log, name="site_log"),
     path("accounts/", account_pages.accounts, name="accounts"),

@@ -2,16 +2,16 @@
 
 ``@world_view(Duty.VIEW)`` stands above every view of a world. The view receives the world itself
 instead of its name. People outside the world get a 404, as if it did not exist; members without the
-duty get a 403 with a sentence.
+duty get a 403 with a sentence. A view that is posted to also says what it does, for the audit log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
+from typing import Any, TypeVar
 
-from django.core.exceptions import PermissionDenied
+from django.core.exceptions import ImproperlyConfigured, PermissionDenied
 from django.http import Http404, HttpRequest
 from django.http.response import HttpResponseBase
 from django.views.decorators.http import require_http_methods
@@ -20,6 +20,7 @@ from django_htmx.middleware import HtmxDetails
 from annotations.models import Duty, User, World
 
 View = Callable[..., HttpResponseBase]
+AnyView = TypeVar("AnyView", bound=View)
 
 
 class PageRequest(HttpRequest):
@@ -39,6 +40,7 @@ class WorldRequest(PageRequest):
 READ = ("GET", "HEAD")
 READ_AND_WRITE = ("GET", "HEAD", "POST")
 WRITE = ("POST",)
+NOTHING = "nothing"  # that others see: the audit log does not record it
 
 WHO_MAY = {
     Duty.VIEW: "members of this world",
@@ -48,12 +50,34 @@ WHO_MAY = {
 }
 
 
+def plain_view(methods: tuple[str, ...] = READ, does: str = "") -> Callable[[AnyView], AnyView]:
+    """Return a view that asks for no duty: of what is everybody's, or one's own.
+
+    ``does`` are the words of the audit log for a POST, or ``NOTHING``.
+    """
+    if ("POST" in methods) != bool(does):
+        raise ImproperlyConfigured(
+            "A view that is posted to says what it does, and no other view does."
+        )
+
+    def decorate(view: AnyView) -> AnyView:
+        guarded = require_http_methods(methods)(view)
+        guarded.does = does  # type: ignore[attr-defined]  # of a function
+        return guarded
+
+    return decorate
+
+
 def world_view(
-    duty: Duty, methods: tuple[str, ...] = READ, write_duty: Duty | None = None
+    duty: Duty,
+    methods: tuple[str, ...] = READ,
+    write_duty: Duty | None = None,
+    does: str = "",
 ) -> Callable[[View], View]:
     """Return a view at ``/w/<world>/…`` for people with ``duty``; a POST needs ``write_duty`` where given.
 
-    Sets ``request.world`` and ``request.duties`` (what the person may do here) for the templates.
+    Sets ``request.world`` and ``request.duties`` (what the person may do here) for the templates. ``does`` is that of
+    ``plain_view``.
     """
 
     def decorate(view: View) -> View:
@@ -64,13 +88,13 @@ def world_view(
             return view(request, request.world, **kwargs)
 
         guarded.duties = {"GET": duty, "POST": write_duty or duty}  # type: ignore[attr-defined]  # of a function
-        return require_http_methods(methods)(guarded)
+        return plain_view(methods, does)(guarded)
 
     return decorate
 
 
-def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
-    """Return a view outside of any world, for the administrators of the site."""
+def site_view(methods: tuple[str, ...] = READ, does: str = "") -> Callable[[View], View]:
+    """Return a view outside of any world, for the administrators of the site; ``does`` is that of ``plain_view``."""
 
     def decorate(view: View) -> View:
         @wraps(view)
@@ -78,7 +102,7 @@ def site_view(methods: tuple[str, ...] = READ) -> Callable[[View], View]:
             demand_site_admin(request)
             return view(request, **kwargs)
 
-        return require_http_methods(methods)(guarded)
+        return plain_view(methods, does)(guarded)
 
     return decorate
 

@@ -1,7 +1,8 @@
 """Write the audit log: one entry for each request that has changed something.
 
-Middleware of the site calls ``record`` in one place, so that no page or route can be forgotten. A view
-may say with ``note`` what its address does not. Commands that change something call ``record_command``.
+Middleware of the site calls ``record`` in one place, so that no page or route can be forgotten. A page declares
+what it does (``access.plain_view``); a route does what its method and name say. Either may say with ``note`` what
+its address does not. Commands that change something call ``record_command``.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from django.http import HttpRequest, HttpResponse
 from django.urls import ResolverMatch
 
 from annotations.models import ApiToken, AuditEntry, Scope, World
+from annotations.people.access import NOTHING
 
 logger = logging.getLogger(__name__)
 
@@ -23,123 +25,7 @@ logger = logging.getLogger(__name__)
 COMMAND_LINE, RULE = "command line", "rule"
 MOST_AT_ONCE = 5_000  # entries that are deleted in one transaction
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS", "TRACE")
-# Routes that are posted to and change nothing that others see; and contributors of campaigns, who are known by
-# a pseudonym alone also where they are logged in.
-UNRECORDED = re.compile(
-    r"_(check|preview|suggestions|completion|consequences)$"
-    r"|^(draft|inbox|notice_open|notice-read-all|notice-read|queue_next|work-item-next|tryout_ask|playground_ask|joint_plan_ask)$"
-    r"|^(campaign|campaign_place|campaign_done)$"
-)
 VERBS = {"POST": "create", "PUT": "change", "PATCH": "change", "DELETE": "delete"}
-# What a route does where its name does not say it.
-WHAT = {
-    **dict.fromkeys(("submission_decide", "submissions_decide"), "moderate submissions"),
-    "submissions_take_back": "take back a moderation",
-    **dict.fromkeys(("campaign_model", "campaign-model"), "ask a language model for paraphrases"),
-    "login": "log in",
-    "join": "join",
-    "password": "change password",
-    "password_set": "set password",
-    "account_close": "close or open an account",
-    "account_link": "make a link for a new password",
-    "token_new": "make a token",
-    "token_revoke": "revoke a token",
-    "logout": "log out",
-    "session_end": "log out elsewhere",
-    "sessions_end": "log out everywhere",
-    "people": "add a member",
-    "member": "change roles",
-    "invite": "invite",
-    "invitation_withdraw": "withdraw an invitation",
-    "people_take_back": "undo a change of people",
-    "world_new": "create a world",
-    "world_import": "import a world",
-    "world_edit": "describe the world",
-    "world_delete": "delete the world",
-    "import": "import files",
-    "import_competition": "import a competition",
-    "import_pairs": "import pairs",
-    "location_rooms": "choose rooms",
-    "generate": "generate commands",
-    "generation": "generate commands",
-    "job_answer": "answer a job",
-    "job_cancel": "cancel a job",
-    "rename": "rename everywhere",
-    "history": "restore a version",
-    "deleted": "restore a deleted row",
-    "delete_row": "delete",
-    "comments": "comment",
-    "comment": "change a comment",
-    "comment_delete": "delete a comment",
-    "comment_restore": "restore a comment",
-    **{name: f"change {name}" for name in ("template", "entity", "predicate", "production")},
-    **{f"{name}_new": f"new {name}" for name in ("template", "entity", "predicate", "production")},
-    "entities_new": "add entities",
-    "entity_class": "change class",
-    "entity_class_new": "new class",
-    **{name: f"change {name}" for name in ("recipe", "primitive")},
-    **{f"{name}_new": f"new {name}" for name in ("recipe", "primitive")},
-    "recipe_book": "replace the recipes",
-    "offered_entity_decide": "decide about a word from dialogues",
-    "robot": "name actions",
-    "template_duplicate": "copy a template",
-    "template_repair": "repair a template",
-    "utterances_new": "add utterances",
-    "upload": "store an upload",
-    "upload_undo": "undo an upload",
-    "upload_redo": "store an undone upload again",
-    "utterances_delete": "delete utterances",
-    "utterances_restore": "restore utterances",
-    "paraphrase_label": "label a paraphrase",
-    **dict.fromkeys(("campaign_results", "campaign-results"), "check crowd results"),
-    "campaign_new": "launch a campaign",
-    "campaign_edit": "change a campaign",
-    "campaign_act": "close or open a campaign",
-    "contributor_forget": "forget a contributor",
-    "split_new": "freeze a split",
-    "split_renew": "freeze a split anew",
-    "run_new": "start a run",
-    "run_cancel": "cancel a run",
-    "run_retrain": "retrain a run",
-    "learning_curve_start": "start runs of a learning curve",
-    **dict.fromkeys(("paraphrase_runs_start", "paraphrase-runs"), "train on people and on models"),
-    "analysis_start": "analyse errors",
-    "analysis_cancel": "cancel an error analysis",
-    "review_tag": "tag an answer",
-    "review_note": "write a note on an answer",
-    "review_doubt": "doubt a label",
-    "error_categories": "add an error category",
-    "error_category": "change an error category",
-    "error_category_delete": "delete an error category",
-    "error_category_move": "move an error category",
-    "slices": "save a slice",
-    "slice_rename": "rename a slice",
-    "slice_delete": "delete a slice",
-    "example_send": "send an example to the work queue",
-    "predictions_send": "send answers to the work queue",
-    "promotion_promote": "promote a run",
-    "promotion_roll_back": "roll back to the run before",
-    "promotion_decline": "decline a proposed run",
-    "answering": "choose what answers",
-    "playground_wrong": "report a wrong answer",
-    "dialogues": "begin a dialogue",
-    "dialogue": "answer in a dialogue",
-    "dialogue_keep": "keep a dialogue as an utterance",
-    "label_answer": "label",
-    "label_mend": "correct what names an entity",
-    "label_send": "send an utterance to be labelled",
-    "label_take_back": "take a label back",
-    "audit_start": "start a label audit",
-    **dict.fromkeys(("results_measure", "results-measure"), "measure what a robot gets"),
-    "audit_decide": "decide about a label",
-    "audit_take_back": "take a decision back",
-    "queue_settings": "set shares",
-    "guidelines": "write guidelines",
-    "queue_act": "work on an item",
-    "queue_ask": "ask for a look",
-    "queue_assign": "assign an item",
-    "queue_settle": "settle two labels",
-}
 
 
 def note(request: HttpRequest, sentence: str) -> None:
@@ -208,13 +94,13 @@ def prune(before: datetime, world: World | None = None) -> int:
 def _has_done_something(request: HttpRequest, match: ResolverMatch, response: HttpResponse) -> bool:
     if request.method in SAFE_METHODS or response.status_code >= 400:
         return False
-    if not request.user.is_authenticated or UNRECORDED.search(match.url_name or ""):
+    if not request.user.is_authenticated or getattr(match.func, "does", "") == NOTHING:
         return False
     if _is_api(match):
-        method = request.method or ""
+        method, route = request.method or "", getattr(match.func, "cls", None)
         asked = getattr(match.func, "actions", {}).get(method.lower(), method)
-        scopes = getattr(getattr(match.func, "cls", None), "scopes", {})
-        return scopes.get(asked) != Scope.READ
+        only_reads = getattr(route, "scopes", {}).get(asked) == Scope.READ
+        return not only_reads and asked not in getattr(route, "unrecorded", ())
     # A page that answers a form with itself has refused it, unless it says otherwise.
     is_htmx = bool(getattr(request, "htmx", False))
     return response.status_code != 200 or is_htmx or hasattr(request, "audit_note")
@@ -233,4 +119,5 @@ def _what(request: HttpRequest, match: ResolverMatch) -> str:
         return f"{VERBS[request.method or '']} {words}"
     if "admin" in match.namespaces:
         return f"site administration: {words}"
-    return WHAT.get(name, words)
+    said: str = getattr(match.func, "does", words)  # a view of another project declares nothing
+    return said

@@ -35,7 +35,7 @@ class EditableKind:
     """``name`` stands in addresses; ``page`` and ``list_page`` are names of routes.
 
     ``page`` is that of one row, with its key; empty where rows have no page of their own. People with
-    ``write_duty`` edit and restore them.
+    ``write_duty`` edit and restore them. ``called`` is what pages call one, where that is not its name.
     """
 
     name: str
@@ -45,6 +45,12 @@ class EditableKind:
     page: str = ""
     write_duty: Duty = Duty.ANNOTATE
     is_deletable: bool = True
+    called: str = ""
+
+    @property
+    def singular(self) -> str:
+        """What pages call one."""
+        return self.called or self.name
 
     def rows_of(self, world: World) -> models.QuerySet[Editable]:
         return self.model._default_manager.filter(**{self.model.world_path: world})
@@ -86,7 +92,10 @@ KINDS = {
         EditableKind("template", SemanticTemplate, "templates", "templates", "template"),
         EditableKind("production", Production, "productions", "grammar", "production"),
         EditableKind("entity", Entity, "entities", "ontology", "entity"),
-        EditableKind("entity_class", EntityClass, "classes", "entity_classes", "entity_class"),
+        EditableKind(
+            *("entity_class", EntityClass, "classes", "entity_classes", "entity_class"),
+            called="class",
+        ),
         EditableKind("predicate", Predicate, "predicates", "predicates", "predicate"),
         EditableKind("recipe", Recipe, "recipes", "recipes", "recipe"),
         EditableKind("primitive", Primitive, "primitives", "recipes", "primitive"),

@@ -25,10 +25,9 @@ from django.db import transaction
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.urls import reverse, reverse_lazy
 from django.utils.decorators import method_decorator
-from django.views.decorators.http import require_http_methods
 
 from annotations.models import User
-from annotations.people.access import READ_AND_WRITE
+from annotations.people.access import READ_AND_WRITE, plain_view
 from annotations.people.accounts import remember_device
 from annotations.people.password_fields import MOST_CHARACTERS, ask_twice
 from annotations.people.rate_limits import Rate
@@ -50,10 +49,6 @@ TOO_OFTEN = (
     f"Try again in {BY_NAME_AND_ADDRESS.seconds // 60} minutes."
 )
 TOO_MANY_AT_ONCE = "Too many attempts for this username just now. Try again in a few seconds."
-
-
-# What the pages below take, before they look at anything else: Django's views of forms read a PUT too.
-reads_forms = method_decorator(require_http_methods(READ_AND_WRITE), "dispatch")
 
 
 class LogInForm(AuthenticationForm):
@@ -84,7 +79,8 @@ class ChangePasswordForm(NewPasswordForm, PasswordChangeForm):
     """The old password, and a new one twice."""
 
 
-@reads_forms
+# Here and below ``plain_view`` refuses, before anything is looked at, the PUT that Django's views of forms read too.
+@method_decorator(plain_view(READ_AND_WRITE, does="log in"), "dispatch")
 class LogIn(LoginView):
     """The only page for logging in; Django's admin leads here as well."""
 
@@ -131,7 +127,7 @@ class LogIn(LoginView):
         return response
 
 
-@reads_forms
+@method_decorator(plain_view(READ_AND_WRITE, does="change password"), "dispatch")
 class ChangePassword(PasswordChangeView):
     """Whoever is logged in changes their own password, and stays logged in here but nowhere else."""
 
@@ -147,7 +143,7 @@ class ChangePassword(PasswordChangeView):
         return response
 
 
-@reads_forms
+@method_decorator(plain_view(READ_AND_WRITE, does="set password"), "dispatch")
 class SetPassword(PasswordResetConfirmView):
     """Whoever has the link that an administrator has made sets a new password by it, once."""
 

@@ -5,27 +5,27 @@ from __future__ import annotations
 from django.contrib.auth.decorators import login_not_required
 from django.http import FileResponse, Http404, HttpRequest, HttpResponse
 from django.shortcuts import render
-from django.views.decorators.http import require_safe
 
+from annotations.people.access import plain_view
 from gpsr_site.documents import INDEX, find_document, find_image
 
 
 @login_not_required
-@require_safe
+@plain_view()
 def documents(request: HttpRequest) -> HttpResponse:
     """Show the first page, which lists all documents."""
     return _show(request, INDEX)
 
 
 @login_not_required
-@require_safe
+@plain_view()
 def document(request: HttpRequest, shelf: str, page: str) -> HttpResponse:
     """Show a document of a shelf."""
     return _show(request, f"{shelf}/{page}")
 
 
 @login_not_required
-@require_safe
+@plain_view()
 def document_image(request: HttpRequest, name: str) -> FileResponse:
     """Send an image of a document."""
     path = find_image(name)

@@ -15,7 +15,7 @@ from django.utils.functional import SimpleLazyObject
 from annotations.models import Duty, Notice, World
 from gpsr_site.overview.counts import Counts, counts_of
 from gpsr_site.overview.workers import workers_now
-from gpsr_site.pages.places import GROUPS, LISTS, Place, way_to
+from gpsr_site.pages.places import GROUPS, Place, way_to
 
 CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the reader has closed
 
@@ -89,7 +89,7 @@ def _place_of(request: HttpRequest) -> tuple[str, tuple[Place, ...]]:
     if match is None or match.url_name is None:
         return "", ()
     # A page about any kind of row belongs to the list of that kind.
-    return match.url_name, way_to(LISTS.get(match.kwargs.get("kind", ""), match.url_name))
+    return match.url_name, way_to(match.kwargs.get("kind", match.url_name))
 
 
 def _rail(world: World, counts: Counts, way: tuple[Place, ...]) -> list[RailGroup]:

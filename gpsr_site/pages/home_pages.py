@@ -8,10 +8,9 @@ from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.shortcuts import redirect, render
 from django.templatetags.static import static
 from django.views.decorators.cache import never_cache
-from django.views.decorators.http import require_safe
 
 from annotations.models import Duty, TaskCategory, World
-from annotations.people.access import PageRequest, WorldRequest, world_view
+from annotations.people.access import PageRequest, WorldRequest, plain_view, world_view
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import Counts, counts_of, counts_of_all
 from gpsr_site.overview.first_steps import first_steps
@@ -31,7 +30,7 @@ class OverviewRequest(WorldRequest):
     counts: Counts
 
 
-@require_safe
+@plain_view()
 def home(request: PageRequest) -> HttpResponse:
     """Show the worlds that the reader may see, with what waits in each."""
     worlds = World.objects.visible_to(request.user)
@@ -70,14 +69,14 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
 
 
 @never_cache
-@require_safe
+@plain_view()
 def banner(request: HttpRequest) -> HttpResponse:
     """Show the worker's state, which every page asks for every two seconds."""
     return render(request, "gpsr_site/_banner.html")
 
 
 @login_not_required
-@require_safe
+@plain_view()
 def favicon(request: HttpRequest) -> HttpResponse:
     """Lead to the icon of the site, for which browsers ask here where a page names none, such as a file or JSON."""
     return redirect(static("dist/favicon.svg"))
@@ -85,7 +84,7 @@ def favicon(request: HttpRequest) -> HttpResponse:
 
 @never_cache
 @login_not_required
-@require_safe
+@plain_view()
 def healthz(request: HttpRequest) -> HttpResponse:
     """Answer 200 where the database answers: for whoever supervises the process."""
     with connection.cursor() as cursor:

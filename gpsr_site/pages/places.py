@@ -35,9 +35,10 @@ class Place:
     """A page that the rail or a row of tabs leads to.
 
     ``label`` is its one name: in the rail or on its tab, as its heading, in the breadcrumb and as its title.
-    ``page`` and ``pages_below`` are URL names; the pages below have names of their own. The first tab of a place
-    with tabs is the place itself. ``query`` is the filter with which its tab opens. ``count`` is a field of ``Counts``
-    that stands beside the label. Only people with ``duty`` see the tab.
+    ``page`` and ``pages_below`` are URL names; the pages below have names of their own. Those of the rows of a kind
+    are below its list, and are not named. The first tab of a place with tabs is the place itself. ``query`` is the
+    filter with which its tab opens. ``count`` is a field of ``Counts`` that stands beside the label. Only people with
+    ``duty`` see the tab.
     """
 
     label: str
@@ -85,16 +86,10 @@ DESCRIBE = (
         page="ontology",
         count="entities",
         waiting=Waiting(count="ontology_problems", noun="warning", reason="to read"),
-        pages_below=("entity", "entity_new", "entities_new", "location_rooms"),
+        pages_below=("entities_new", "location_rooms"),
         tabs=(
-            Place(
-                label="Classes",
-                page="entity_classes",
-                pages_below=("entity_class", "entity_class_new"),
-            ),
-            Place(
-                label="Predicates", page="predicates", pages_below=("predicate", "predicate_new")
-            ),
+            Place(label="Classes", page="entity_classes"),
+            Place(label="Predicates", page="predicates"),
             Place(label="Words from dialogues", page="offered_entities"),
         ),
     ),
@@ -103,14 +98,12 @@ DESCRIBE = (
         page="grammar",
         count="productions",
         waiting=Waiting(count="grammar_problems", noun="warning", reason="to read"),
-        pages_below=("production", "production_new"),
     ),
     Place(
         label="Templates",
         page="templates",
         count="templates",
         waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
-        pages_below=("template", "template_new"),
     ),
     Place(
         label="Coverage",
@@ -121,11 +114,7 @@ DESCRIBE = (
             Place(label="Outside the grammar", page="outside_grammar"),
         ),
     ),
-    Place(
-        label="Recipes",
-        page="recipes",
-        pages_below=("recipe", "recipe_new", "primitive", "primitive_new"),
-    ),
+    Place(label="Recipes", page="recipes"),
 )
 
 COLLECT = (
@@ -144,7 +133,6 @@ COLLECT = (
         label="Paraphrases",
         page="paraphrases",
         count="paraphrases",
-        pages_below=("paraphrase",),
         tabs=(
             Place(
                 label="Campaigns",
@@ -177,7 +165,7 @@ COLLECT = (
             noun="utterance",
             reason="without a form, not waiting in the queue",
         ),
-        pages_below=("utterance", "utterances_new", "utterances_delete"),
+        pages_below=("utterances_new", "utterances_delete"),
         tabs=(Place(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
     ),
     Place(
@@ -273,7 +261,11 @@ LISTS |= {"form": "logical_forms"}
 
 
 def way_to(page: str) -> tuple[Place, ...]:
-    """Return the places on the way to a page of a world, the one of the rail first; empty for a page of no place."""
+    """Return the places on the way to a page of a world, the one of the rail first; empty for a page of no place.
+
+    ``page`` is a URL name, or the name of a kind: the page of a row, and of a new one, is below the list of its kind.
+    """
+    page = LISTS.get(page.removesuffix("_new"), page)
     ways = (place.way_to(page) for group in GROUPS for place in group.places)
     return next(filter(None, ways), ())
 

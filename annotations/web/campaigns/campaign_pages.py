@@ -54,7 +54,7 @@ def campaigns(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="launch a campaign")
 def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that launches a campaign; its other button only previews the prompts.
 
@@ -90,7 +90,7 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @takes_files
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="check crowd results")
 def campaign_results(request: WorldRequest, world: World) -> HttpResponse:
     """Take the results of a crowd market; a job checks them, and asks before it imports them."""
     initial = {"campaign": request.GET.get("campaign", "")}
@@ -127,7 +127,7 @@ def campaign_page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return render_list(request, "annotations/campaigns/campaign_page.html", context)
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="change a campaign")
 def campaign_edit(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show the form with the texts, the end and the payment of a campaign; a POST saves them as its next version."""
     row = get_object_or_404(world.campaigns.select_related("world"), pk=pk)
@@ -179,7 +179,7 @@ def campaign_state(request: WorldRequest, world: World, pk: int) -> HttpResponse
     return render(request, "annotations/campaigns/_campaign_state.html", context)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="close or open a campaign")
 def campaign_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Close a campaign, open it again, revoke its link or make another: as ``step`` says."""
     row = get_object_or_404(world.campaigns, pk=pk)
@@ -198,7 +198,7 @@ def campaign_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return redirect("campaign_page", world=world.name, pk=pk)
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="forget a contributor")
 def contributor_forget(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Ask whether to delete a contributor with what they wrote, which cannot be undone; a POST does it."""
     rows = Contributor.objects.filter(campaign__world=world).select_related("campaign")

@@ -82,7 +82,7 @@ def submission(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return _show(request, row)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="moderate submissions")
 def submission_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Decide about one submission, or mend its text."""
     row = get_object_or_404(submissions_of(world), pk=pk)
@@ -119,7 +119,7 @@ def submission_decide(request: WorldRequest, world: World, pk: int) -> HttpRespo
 
 
 @may_take_long
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="moderate submissions")
 def submissions_decide(request: WorldRequest, world: World) -> HttpResponse:
     """Accept or reject the submissions that are ticked."""
     verbs: dict[str, Callable[[Sequence[Submission], User], int]] = {
@@ -139,7 +139,7 @@ def submissions_decide(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="take back a moderation")
 def submissions_take_back(request: WorldRequest, world: World) -> HttpResponse:
     """Undo what somebody decided at one moment: the time that was sent as ``at``."""
     try:

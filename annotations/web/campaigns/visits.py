@@ -21,7 +21,6 @@ from django.shortcuts import redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.csrf import csrf_exempt, csrf_protect
-from django.views.decorators.http import require_http_methods
 
 from annotations.campaigns.addresses import origin_of
 from annotations.campaigns.pseudonyms import (
@@ -35,6 +34,7 @@ from annotations.campaigns.pseudonyms import (
 from annotations.campaigns.tasks import contributor_of, preview_places
 from annotations.language.texts import Refusal
 from annotations.models import Campaign, Contributor, Submission
+from annotations.people.access import NOTHING, plain_view
 
 KNOWN_FOR = 30 * 24 * 3600  # seconds for which a browser is known
 VISITOR = "annotations.campaigns.visitor"  # salts what is signed
@@ -152,7 +152,8 @@ def public_view(methods: tuple[str, ...]) -> Callable[[View], View]:
     """Return a view at ``/p/<key>/…`` for whoever has the link; it receives a ``Visit``.
 
     Whoever has a market's id goes on with the task of that id, also in another browser. What was written in
-    another one is not shown: an id can be made up.
+    another one is not shown: an id can be made up. The audit log records nothing: contributors are known by a
+    pseudonym alone, also where they are logged in.
     """
 
     def decorate(view: View) -> View:
@@ -181,7 +182,7 @@ def public_view(methods: tuple[str, ...]) -> Callable[[View], View]:
                 return answer(request)
             return csrf_protect(answer)(request)
 
-        reads = require_http_methods(methods)(guarded)
+        reads = plain_view(methods, NOTHING)(guarded)
         return csrf_exempt(login_not_required(never_cache(reads)))
 
     return decorate

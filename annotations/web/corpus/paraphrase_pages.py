@@ -13,7 +13,7 @@ from annotations.labelling.giving import NotForThem, kinds_for
 from annotations.labelling.label_decisions import correct_label
 from annotations.language.texts import LanguageError
 from annotations.models import Duty, WorkKind, World
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.occurrences import MOST_SHOWN, examples_of_pair, logical_form_of
 from annotations.showing.listing import Listing, Sort, render_list
 from annotations.web.corpus.corpus_filters import ParaphraseFilters
@@ -47,7 +47,7 @@ def paraphrase(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "annotations/corpus/paraphrase.html", context)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="label a paraphrase")
 def paraphrase_label(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Correct the label of a paraphrase; the queue knows who may."""
     row = get_object_or_404(world.paraphrases, pk=pk)
@@ -70,7 +70,7 @@ def paraphrase_label(request: WorldRequest, world: World, pk: int) -> HttpRespon
     return redirect("paraphrase", world=world.name, pk=pk)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def paraphrase_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a label while somebody writes it."""
     row = get_object_or_404(world.paraphrases, pk=pk)

@@ -47,7 +47,7 @@ def splits(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="freeze a split")
 def split_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that freezes a split; its other button only previews the counts."""
     initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
@@ -108,7 +108,7 @@ def _changes_of(row: Split) -> dict[str, object]:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="freeze a split anew")
 def split_renew(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Freeze a split anew from the corpus of today, and show the new one."""
     row = get_object_or_404(Split.objects.select_related("world", "follows"), world=world, pk=pk)

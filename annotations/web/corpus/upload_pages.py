@@ -91,7 +91,7 @@ def uploads(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="store an upload")
 def upload(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show what an upload would store, or what it has stored; a POST stores it."""
     row = _upload(world, pk)
@@ -130,7 +130,7 @@ def _store(request: WorldRequest, world: World, row: Upload, shown: Preview) -> 
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="undo an upload")
 def upload_undo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete the utterances of an upload. Where somebody has answered some since, ask first about these."""
     row = _upload(world, pk)
@@ -151,7 +151,7 @@ def upload_undo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="store an undone upload again")
 def upload_redo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Restore the utterances of an upload that was undone."""
     row = _upload(world, pk)

@@ -110,7 +110,7 @@ def utterance(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 
 
 @takes_files
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="add utterances")
 def utterances_new(request: WorldRequest, world: World) -> HttpResponse:
     """Take utterances in. Pasted lines are stored at once, all or none; a file or a table is shown first."""
     form = UtterancesForm(posted(request), request.FILES or None)
@@ -155,7 +155,7 @@ def _store_pasted(request: WorldRequest, world: World, shown: Preview) -> HttpRe
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="delete utterances")
 def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
     """Say which utterances would be deleted: the ticked ones, or all that the filters leave.
 
@@ -190,7 +190,7 @@ def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="restore utterances")
 def utterances_restore(request: WorldRequest, world: World) -> HttpResponse:
     """Restore the utterances that were deleted together, at the time that was sent as ``at``."""
     try:

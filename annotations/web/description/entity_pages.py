@@ -21,7 +21,7 @@ from annotations.web.description.entity_noun import asked_class
 from annotations.web.forms import posted
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="add entities")
 def entities_new(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the pasted lines would add. With ``add``, add all of them or none."""
     form = EntitiesForm(world, posted(request), initial=asked_class(request))

@@ -14,7 +14,7 @@ from annotations.editing.edits import Overtaken, add
 from annotations.editing.once_keys import new_key
 from annotations.models import Duty, Guidelines, World
 from annotations.models.description import MOST_CHARACTERS_OF_GUIDELINES
-from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.showing.markdown import rendered
 from annotations.web.editing.merge_pages import merge_page, save_edit
 from annotations.web.forms import posted
@@ -35,7 +35,7 @@ class GuidelinesForm(forms.Form):
     once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE, does="write guidelines")
 def guidelines(request: WorldRequest, world: World) -> HttpResponse:
     """Show the guidelines; a POST saves them as their next version."""
     row = world.guidelines.first()
@@ -62,7 +62,7 @@ def guidelines(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/guidelines.html", context)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does=NOTHING)
 def guidelines_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Show what the typed guidelines look like."""
     form = GuidelinesForm(request.POST)

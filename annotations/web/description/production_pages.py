@@ -6,12 +6,12 @@ from django.http import JsonResponse
 
 from annotations.generation.production_check import assist_production
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.web.description.production_forms import ProductionForm
 from annotations.web.description.production_noun import PRODUCTIONS, edit_typed
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def production_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
     edit = edit_typed(ProductionForm(world, PRODUCTIONS.row_in(request, world), request.POST))

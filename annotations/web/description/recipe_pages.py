@@ -51,7 +51,7 @@ def recipes(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/recipes.html", context)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="replace the recipes")
 def recipe_book(request: WorldRequest, world: World) -> HttpResponse:
     """Replace the whole book; a button of the next page brings the old one back."""
     form = RecipeBookForm(request.POST)

@@ -55,7 +55,7 @@ class RoomsForm(forms.Form):
         return changes
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="choose rooms")
 def location_rooms(request: WorldRequest, world: World) -> HttpResponse:
     """Show the locations with their rooms, and store other ones."""
     form = RoomsForm(world, posted(request))

@@ -38,7 +38,14 @@ from annotations.language.forms import head_predicate, places_in_form, places_in
 from annotations.language.texts import say_count
 from annotations.models import Duty, SemanticTemplate, StoredProblem, TaskCategory, User, World
 from annotations.models.description import ProblemSubject, TemplateStatus
-from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
+from annotations.people.access import (
+    NOTHING,
+    READ_AND_WRITE,
+    WRITE,
+    PageRequest,
+    WorldRequest,
+    world_view,
+)
 from annotations.rows.row_kinds import KINDS
 from annotations.showing.form_presentation import form_of
 from annotations.showing.listing import Listing, Sort, render_list
@@ -119,7 +126,7 @@ def has_shared_slot(row: SemanticTemplate) -> bool:
     return bool(in_pattern & in_form)
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="new template")
 def template_new(request: WorldRequest, world: World) -> HttpResponse:
     """Write a new template."""
     if not has_grammar(world):
@@ -144,7 +151,7 @@ def template_new(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/template.html", context)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE, does="change template")
 def template(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one template: what it means, its commands and its problems. Annotators change it."""
     row, is_there = KINDS["template"].row_or_last_known(world, pk)
@@ -244,7 +251,7 @@ def typed_in(form: TemplateForm) -> tuple[TaskCategory | None, str, str] | None:
     return form.chosen_category, *(text.replace("\r\n", "\n") for text in (pattern, logical_form))
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def template_check(request: WorldRequest, world: World) -> JsonResponse:
     """Check what is typed, for the editor."""
     typed = typed_in(TemplateForm(world, None, request.POST))
@@ -265,7 +272,7 @@ def template_completion(request: WorldRequest, world: World, pk: int) -> HttpRes
     return response
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def template_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the typed template means, with samples of its commands."""
     checked = checked_of(world, TemplateForm(world, None, request.POST))
@@ -274,7 +281,7 @@ def template_preview(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/_template_preview.html", context)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def template_consequences(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what saving the typed template would change. ``template`` names the stored one."""
     key = request.GET.get("template", "")
@@ -285,7 +292,7 @@ def template_consequences(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/_change_consequences.html", context)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="copy a template")
 def template_duplicate(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Copy a template as a draft, to be changed into another one."""
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)

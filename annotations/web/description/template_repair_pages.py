@@ -52,7 +52,7 @@ def conflicts(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/description/conflicts.html", context)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="repair a template")
 def template_repair(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a template, move it to another task category, or give it the form of another template."""
     row = get_object_or_404(SemanticTemplate, grammar__world=world, pk=pk)

@@ -9,7 +9,6 @@ from django.core.exceptions import PermissionDenied
 from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
-from django.views.decorators.http import require_http_methods
 
 from annotations.editing.commenting import (
     SUBJECTS,
@@ -22,7 +21,15 @@ from annotations.editing.commenting import (
     versions_of,
 )
 from annotations.models import Comment, Duty, Notice, World
-from annotations.people.access import READ_AND_WRITE, WRITE, PageRequest, WorldRequest, world_view
+from annotations.people.access import (
+    NOTHING,
+    READ_AND_WRITE,
+    WRITE,
+    PageRequest,
+    WorldRequest,
+    plain_view,
+    world_view,
+)
 from annotations.rows.row_kinds import KINDS
 from annotations.showing.paging import number_in
 from annotations.web.editing.comment_forms import COMMENTS, TOO_MANY, CommentEditForm, CommentForm
@@ -32,7 +39,7 @@ from annotations.web.forms import posted
 INBOX_SHOWN = 50
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, does="comment")
 def comments(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Show the comments on a row; a POST adds one."""
     if kind not in SUBJECTS:
@@ -50,7 +57,7 @@ def comments(request: WorldRequest, world: World, kind: str, pk: int) -> HttpRes
     return render(request, "annotations/editing/comments.html", context)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, does="change a comment")
 def comment(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a comment and its earlier versions. Its author edits it with a POST."""
     row = get_object_or_404(world.comments.present(), pk=pk)
@@ -86,7 +93,7 @@ def _save_edit(request: PageRequest, row: Comment, form: CommentEditForm) -> boo
     return True
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="delete a comment")
 def comment_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a comment. Its author may, and so may admins."""
     row = get_object_or_404(world.comments.present(), pk=pk)
@@ -98,7 +105,7 @@ def comment_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse
     return redirect(address_of(row) or "inbox")
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="restore a comment")
 def comment_restore(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Bring a deleted comment back."""
     row = get_object_or_404(world.comments, pk=pk)
@@ -109,7 +116,7 @@ def comment_restore(request: WorldRequest, world: World, pk: int) -> HttpRespons
     return redirect(address_of(row) or "inbox")
 
 
-@require_http_methods(READ_AND_WRITE)
+@plain_view(READ_AND_WRITE, does=NOTHING)
 def inbox(request: PageRequest) -> HttpResponse:
     """Show the reader's notices from all their worlds. A POST marks all of them read."""
     notices = Notice.objects.of(request.user)
@@ -127,7 +134,7 @@ def inbox(request: PageRequest) -> HttpResponse:
     return render(request, "annotations/editing/inbox.html", context)
 
 
-@require_http_methods(WRITE)
+@plain_view(WRITE, does=NOTHING)
 def notice_open(request: PageRequest, pk: int) -> HttpResponse:
     """Mark a notice read and open its comment. With ``stay``, stay in the inbox."""
     notice = get_object_or_404(Notice.objects.of(request.user), pk=pk)

@@ -18,7 +18,7 @@ from annotations.web.editing.kinds_of_rows import DELETING, kind_named
 from annotations.web.editing.undo import say_deleted
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="delete")
 def delete_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Preview the deletion of a row. A POST deletes it if it is still at ``version``."""
     of_kind = kind_named(kind)

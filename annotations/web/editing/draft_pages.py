@@ -8,7 +8,6 @@ from django.http import Http404, HttpResponse, JsonResponse
 from django.shortcuts import render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
-from django.views.decorators.http import require_http_methods
 
 from annotations.editing.drafts import (
     MOST_BYTES,
@@ -21,10 +20,11 @@ from annotations.language.texts import Refusal
 from annotations.models import Draft, Duty, World
 from annotations.models.editing import NEW
 from annotations.people.access import (
-    READ,
+    NOTHING,
     READ_AND_WRITE,
     PageRequest,
     WorldRequest,
+    plain_view,
     world_view,
 )
 from annotations.showing.paging import number_in
@@ -35,7 +35,7 @@ LONGEST_SUBJECT = Draft._meta.get_field("subject").max_length
 
 
 @never_cache
-@require_http_methods(READ)
+@plain_view()
 def my_drafts(request: PageRequest) -> HttpResponse:
     """List what the reader has typed and not saved. Their browser adds what it alone keeps (``my-drafts.js``)."""
     drafts = [(each, _page_of(each)) for each in drafts_of(request.user)]
@@ -57,7 +57,7 @@ def _page_of(row: Draft) -> str:
 
 
 @never_cache
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does=NOTHING)
 def draft(request: WorldRequest, world: World, kind: str, subject: str) -> JsonResponse:
     """Return the reader's own draft about a row. A POST keeps or discards it.
 

@@ -20,7 +20,7 @@ from annotations.web.editing.kinds_of_rows import RESTORING, kind_named
 DELETED_SHOWN = 50
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE, does="restore a version")
 def history(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Show the versions of a row; a POST restores the one that ``entry`` names."""
     of_kind = kind_named(kind)

@@ -40,6 +40,7 @@ class NoticeViewSet(ListModelMixin, SiteViewSet):
     serializer_class = NoticeSerializer
     filter_backends = []
     sorts = {"newest": "-pk"}
+    unrecorded = ("read_all", "read_one")
 
     def rows(self) -> QuerySet[Notice]:
         rows = Notice.objects.of(self.request.user)

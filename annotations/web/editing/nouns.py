@@ -22,6 +22,7 @@ from annotations.editing.once_keys import made_before
 from annotations.language.texts import Problem
 from annotations.models import Duty, World
 from annotations.people.access import (
+    NOTHING,
     READ_AND_WRITE,
     WRITE,
     PageRequest,
@@ -115,7 +116,12 @@ class Noun:
 
     @cached_property
     def row_page(self) -> View:
-        @world_view(Duty.VIEW, READ_AND_WRITE, write_duty=self.kind.write_duty)
+        @world_view(
+            Duty.VIEW,
+            READ_AND_WRITE,
+            write_duty=self.kind.write_duty,
+            does=f"change {self.kind.singular}",
+        )
         def page(request: WorldRequest, world: World, pk: int) -> HttpResponse:
             row, is_there = self.kind.row_or_last_known(world, pk)
             if not is_there and request.method != "POST":
@@ -139,7 +145,7 @@ class Noun:
 
     @cached_property
     def new_page(self) -> View:
-        @world_view(self.kind.write_duty, READ_AND_WRITE)
+        @world_view(self.kind.write_duty, READ_AND_WRITE, does=f"new {self.kind.singular}")
         def page(request: WorldRequest, world: World) -> HttpResponse:
             if lacking := self.missing(request, world):
                 return lacking
@@ -159,7 +165,7 @@ class Noun:
 
     @cached_property
     def preview_page(self) -> View:
-        @world_view(self.kind.write_duty, WRITE)
+        @world_view(self.kind.write_duty, WRITE, does=NOTHING)
         def page(request: WorldRequest, world: World) -> HttpResponse:
             row = self.row_in(request, world)
             context = self.preview(request, world, self.form(world, row, request.POST))
@@ -172,7 +178,7 @@ class Noun:
         key = request.GET.get("row", "")
         row = self.kind.rows_of(world).filter(pk=number_in(key)).first()
         if key and row is None:
-            raise Http404(f"No such {self.kind.name}.")
+            raise Http404(f"No such {self.kind.singular}.")
         return row
 
     def _is_new(self, request: WorldRequest, form: NounForm) -> bool:

@@ -19,7 +19,7 @@ from annotations.web.editing.rename_forms import RenameForm, names_of
 WHAT = {"production": "nonterminal"}
 
 
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="rename everywhere")
 def rename_row(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Preview a renaming. A POST carries it out."""
     of_kind = kind_named(kind)

@@ -17,7 +17,7 @@ from annotations.people.access import WRITE, PageRequest, WorldRequest, world_vi
 from annotations.web.labelling.work_item_forms import AskForm
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="send an example to the work queue")
 def example_send(request: WorldRequest, world: World, split: int, pk: int) -> HttpResponse:
     """Send the row behind an example to the work queue with a reason, and go back."""
     rows = Example.objects.filter(split__world=world, split=split)

@@ -33,6 +33,7 @@ from annotations.language.texts import Refusal, say_count
 from annotations.models import Assignment, Duty, WorkItem, WorkKind, World
 from annotations.models.queueing import OCCUPYING
 from annotations.people.access import (
+    NOTHING,
     READ_AND_WRITE,
     WRITE,
     WorldRequest,
@@ -85,7 +86,7 @@ def queue(request: WorldRequest, world: World) -> HttpResponse:
     return render_list(request, "annotations/labelling/queue.html", context)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def queue_next(request: WorldRequest, world: World) -> HttpResponse:
     """Assign the next item to the reader, and open its page: with ``skipped`` one that they have skipped."""
     give = next_skipped if "skipped" in request.POST else next_item
@@ -141,7 +142,7 @@ def page_of(item: WorkItem) -> str:
     return reverse("paraphrase", args=[world, item.paraphrase_id])
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="settle two labels")
 def queue_settle(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Decide between two labels, with one of them or with another answer."""
     item = _item_of(world, pk)
@@ -171,7 +172,7 @@ def _finish(part: Assignment) -> None:
     finish(part)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="ask for a look")
 def queue_ask(request: WorldRequest, world: World, kind: str, pk: int) -> HttpResponse:
     """Ask for a look at an utterance, a template or a paraphrase, with a reason."""
     if kind not in ASKABLE:
@@ -198,7 +199,7 @@ STEPS: dict[str, tuple[Callable[[Assignment], object], str]] = {
 }
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="work on an item")
 def queue_act(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Take an item, give it back, skip it or end it; admins give it to somebody or withdraw it."""
     item = _item_of(world, pk)
@@ -240,7 +241,7 @@ def _act(request: WorldRequest, item: WorkItem, step: str) -> str:
     return sentence
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="assign an item")
 def queue_assign(request: WorldRequest, world: World) -> HttpResponse:
     """Give somebody the first free items of the list that the filters of the URL leave."""
     form = AssignManyForm(world, request.POST)
@@ -261,7 +262,7 @@ def _back_to_list(request: WorldRequest, world: World) -> HttpResponse:
     return response
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="set shares")
 def queue_settings(request: WorldRequest, world: World) -> HttpResponse:
     """Set the share of items, by kind, that two people do independently."""
     form = SharesForm(posted(request), initial=shares_of(world))

@@ -169,6 +169,7 @@ class WorkItemViewSet(RowsViewSet):
         ("assign", "withdraw", "assign_many"), Duty.MANAGE
     )
     sorts = {"id": "pk", "created": "created_at", "priority": "priority"}
+    unrecorded = ("next",)
 
     def get_serializer_class(self) -> type[WorkItemSerializer]:
         return ComparedWorkItemSerializer if self.action == "retrieve" else WorkItemSerializer

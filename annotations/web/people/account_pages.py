@@ -30,7 +30,7 @@ def accounts(request: PageRequest) -> HttpResponse:
     )
 
 
-@site_view(WRITE)
+@site_view(WRITE, does="close or open an account")
 def account_close(request: PageRequest, pk: int) -> HttpResponse:
     """Close or reopen an account. Closing it logs it out everywhere and stops its tokens."""
     account = get_object_or_404(User, pk=pk)
@@ -45,7 +45,7 @@ def account_close(request: PageRequest, pk: int) -> HttpResponse:
     return redirect("accounts")
 
 
-@site_view(WRITE)
+@site_view(WRITE, does="make a link for a new password")
 def account_link(request: PageRequest, pk: int) -> HttpResponse:
     """Make a link for a new password. It works once, for three days."""
     account = get_object_or_404(User.objects.filter(is_active=True), pk=pk)

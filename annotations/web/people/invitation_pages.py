@@ -10,10 +10,9 @@ from django.http import HttpRequest, HttpResponse
 from django.shortcuts import redirect, render
 from django.views.decorators.cache import never_cache
 from django.views.decorators.debug import sensitive_post_parameters
-from django.views.decorators.http import require_http_methods
 
 from annotations.models import Invitation, User
-from annotations.people.access import READ_AND_WRITE
+from annotations.people.access import READ_AND_WRITE, plain_view
 from annotations.people.accounts import remember_device
 from annotations.people.audit_log import note
 from annotations.people.invitations import (
@@ -58,7 +57,7 @@ class SignUpForm(UserCreationForm):  # type: ignore[type-arg]  # generic in the 
 @login_not_required
 @never_cache
 @sensitive_post_parameters()
-@require_http_methods(READ_AND_WRITE)
+@plain_view(READ_AND_WRITE, does="join")
 def join(request: HttpRequest, key: str) -> HttpResponse:
     """Let a logged-in user join the world, or create an account that joins it.
 

@@ -34,7 +34,7 @@ WHAT_ROLES_DO = {
 
 
 @never_cache
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE, does="add a member")
 def people(request: WorldRequest, world: World) -> HttpResponse:
     """List the members with their roles; add one who has an account."""
     form = MemberForm(request.POST if request.method == "POST" else None)
@@ -49,7 +49,7 @@ def people(request: WorldRequest, world: World) -> HttpResponse:
     return _render_people(request, world, form=form)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="invite")
 def invite(request: WorldRequest, world: World) -> HttpResponse:
     """Create an invitation. The page “People” shows its link once."""
     form = InvitationForm(request.POST)
@@ -62,7 +62,7 @@ def invite(request: WorldRequest, world: World) -> HttpResponse:
     return redirect("people", world=world.name)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="withdraw an invitation")
 def withdraw(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """End an invitation. Its link stops working."""
     rows = Invitation.objects.filter(world=world)
@@ -74,7 +74,7 @@ def withdraw(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return redirect("people", world=world.name)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="undo a change of people")
 def take_change_back(request: WorldRequest, world: World) -> HttpResponse:
     """Undo a change of roles, of members or of an invitation, as long as nobody has changed it again."""
     try:
@@ -89,7 +89,7 @@ def take_change_back(request: WorldRequest, world: World) -> HttpResponse:
     return redirect("people", world=world.name)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="change roles")
 def member(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Change the roles of a member, or remove them."""
     account = get_object_or_404(User.objects.filter(memberships__world=world).distinct(), pk=pk)

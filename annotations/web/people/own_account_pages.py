@@ -8,11 +8,10 @@ from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.utils import timezone
 from django.views.decorators.cache import never_cache
-from django.views.decorators.http import require_http_methods
 
 from annotations.models import ApiToken, LogInSession, Scope
 from annotations.people import shown_once
-from annotations.people.access import READ, WRITE, PageRequest
+from annotations.people.access import WRITE, PageRequest, plain_view
 from annotations.people.accounts import end_session, sessions_of
 from annotations.people.audit_log import note
 from annotations.web.people.token_forms import TokenForm
@@ -26,14 +25,14 @@ WHAT_SCOPES_DO = {
 
 
 @never_cache
-@require_http_methods(READ)
+@plain_view()
 def account(request: PageRequest) -> HttpResponse:
     """Show the user's tokens and sessions. The secret of a new token is shown once."""
     key = shown_once.take(request, "token") if request.method == "GET" else ""
     return _render_account(request, key=key)
 
 
-@require_http_methods(WRITE)
+@plain_view(WRITE, does="make a token")
 def token_new(request: PageRequest) -> HttpResponse:
     """Create a token. The account page shows its secret once."""
     form = TokenForm(request.user, request.POST)
@@ -45,7 +44,7 @@ def token_new(request: PageRequest) -> HttpResponse:
     return redirect("account")
 
 
-@require_http_methods(WRITE)
+@plain_view(WRITE, does="revoke a token")
 def token_revoke(request: PageRequest, pk: int) -> HttpResponse:
     """Revoke a token of the user."""
     token = get_object_or_404(request.user.api_tokens, pk=pk)
@@ -55,7 +54,7 @@ def token_revoke(request: PageRequest, pk: int) -> HttpResponse:
     return redirect("account")
 
 
-@require_http_methods(WRITE)
+@plain_view(WRITE, does="log out elsewhere")
 def session_end(request: PageRequest, handle: str) -> HttpResponse:
     """Log the user out in one browser, which may be this one."""
     if end_session(request.user, handle):
@@ -63,7 +62,7 @@ def session_end(request: PageRequest, handle: str) -> HttpResponse:
     return redirect("account")
 
 
-@require_http_methods(WRITE)
+@plain_view(WRITE, does="log out everywhere")
 def sessions_end(request: PageRequest) -> HttpResponse:
     """Log the user out everywhere, in this browser too."""
     LogInSession.objects.filter(user=request.user).delete()

@@ -42,8 +42,8 @@ SCOPE_FOR = {
 
 
 def asked_of(view: APIView, method: str) -> str:
-    """Return the key of a request in ``duties``, ``scopes`` and ``conditional`` of a view: the action in a
-    view set, else the method."""
+    """Return the key of a request in ``duties``, ``scopes``, ``conditional`` and ``unrecorded`` of a view: the
+    action in a view set, else the method."""
     return getattr(view, "action", None) or ("GET" if method == "HEAD" else method)
 
 

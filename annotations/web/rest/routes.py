@@ -36,6 +36,7 @@ class Route(GenericAPIView[Any]):
     duties: Mapping[str, Duty] = {}
     parser_classes = [BoundedJSONParser]
     conditional: tuple[str, ...] = ()  # what needs If-Match
+    unrecorded: tuple[str, ...] = ()  # what changes nothing that others see, for the audit log
     model: type[Model]
     request: ApiRequest
 
@@ -144,8 +145,8 @@ class RowRoute(SingleRow, WorldRoute):
 class SiteViewSet(ViewSetMixin, Tagged):
     """A kind of row: its list, each of its rows, and the actions on one.
 
-    The keys of ``duties``, ``scopes`` and ``conditional`` are its actions. An action without a docstring is
-    described by that of the class.
+    The keys of ``duties``, ``scopes``, ``conditional`` and ``unrecorded`` are its actions. An action without a
+    docstring is described by that of the class.
     """
 
     lookup_value_converter = "int"

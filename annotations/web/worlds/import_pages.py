@@ -32,7 +32,7 @@ from annotations.web.worlds.import_forms import CompetitionForm, ImportForm, Pai
 
 
 @takes_files
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE, does="import files")
 def import_files(request: WorldRequest, world: World) -> HttpResponse:
     """List what everybody may export. Import the uploaded files of a generator, all of them or nothing."""
     initial = {"keeps_others": "part" in request.GET}
@@ -51,7 +51,7 @@ def import_files(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @takes_files
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="import a competition")
 def import_competition_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the folder of a competition, all of it or nothing."""
     form = CompetitionForm(posted(request), request.FILES or None)
@@ -67,7 +67,7 @@ def import_competition_files(request: WorldRequest, world: World) -> HttpRespons
 
 
 @takes_files
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="import pairs")
 def import_pair_files(request: WorldRequest, world: World) -> HttpResponse:
     """Import the uploaded pairs of a published corpus as frozen splits and paraphrases."""
     form = PairsForm(posted(request), request.FILES or None)
@@ -105,7 +105,7 @@ def _page(request: PageRequest, template: str, form: Any, **context: Any) -> Htt
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="generate commands")
 def generate(request: WorldRequest, world: World) -> HttpResponse:
     """Make commands and forms of the templates, as many as the last time."""
     try:
@@ -117,7 +117,7 @@ def generate(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @may_take_long
-@world_view(Duty.ANNOTATE, READ_AND_WRITE)
+@world_view(Duty.ANNOTATE, READ_AND_WRITE, does="generate commands")
 def generation(request: WorldRequest, world: World) -> HttpResponse:
     """Say how many commands the templates can make, and make all of them or a sample."""
     initial = GenerationForm.initial_of(SampleNote.from_json(world.sample))

@@ -11,22 +11,21 @@ from django.core.exceptions import PermissionDenied
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
-from django.views.decorators.http import require_http_methods
 from django_htmx.http import HttpResponseClientRefresh
 
 from annotations.background.requesting import answer_job, cancel_job
 from annotations.language.texts import Refusal
 from annotations.models import Duty, Job, World
-from annotations.people.access import READ, WRITE, WorldRequest, demand, world_view
+from annotations.people.access import READ, WRITE, WorldRequest, demand, plain_view, world_view
 from annotations.web.worlds.report_presentation import shown_report
 
 LISTED = 100
 
 
-def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
+def job_view(methods: tuple[str, ...] = READ, does: str = "") -> Callable[..., Any]:
     """Make a view of one job, for those who may see it. A POST needs the duty that starting the job needed.
 
-    The page stands in the frame of the job's world, where there is one.
+    The page stands in the frame of the job's world, where there is one. ``does`` is that of ``plain_view``.
     """
 
     def decorate(view: Callable[..., HttpResponse]) -> Callable[..., HttpResponse]:
@@ -42,7 +41,7 @@ def job_view(methods: tuple[str, ...] = READ) -> Callable[..., Any]:
                 raise PermissionDenied("Only who asked for this may look at it.")
             return view(request, job)
 
-        return require_http_methods(methods)(guarded)
+        return plain_view(methods, does)(guarded)
 
     return decorate
 
@@ -70,7 +69,7 @@ def job_state(request: WorldRequest, job: Job) -> HttpResponse:
     return render(request, "annotations/worlds/_job_state.html", _state_of(request, job))
 
 
-@job_view(WRITE)
+@job_view(WRITE, does="cancel a job")
 def job_cancel(request: WorldRequest, job: Job) -> HttpResponse:
     """Stop a job within seconds, or drop an import that asks."""
     try:
@@ -80,7 +79,7 @@ def job_cancel(request: WorldRequest, job: Job) -> HttpResponse:
     return redirect("job", pk=job.pk)
 
 
-@job_view(WRITE)
+@job_view(WRITE, does="answer a job")
 def job_answer(request: WorldRequest, job: Job) -> HttpResponse:
     """Import the kept files after all, as the report says."""
     try:

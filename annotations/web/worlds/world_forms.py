@@ -14,7 +14,6 @@ from annotations.editing.edits import say_who
 from annotations.exchange.shipped_worlds import SHIPPED_WORLDS, request_load
 from annotations.models import AuditEntry, Job, User, World
 from annotations.models.worlds import Role
-from annotations.people.audit_log import WHAT
 from annotations.people.members import add_roles
 
 
@@ -24,6 +23,7 @@ def start_choices() -> list[tuple[str, str]]:
     return [("", "You import the files of a command generator next."), *shipped]
 
 
+DESCRIBES = "describe the world"  # the words of the audit log
 NAME_TAKEN = "There is a world of this name already. Choose another name."
 LONGEST_SHOWN = 400  # characters of what another admin has saved
 AT_WORK = "Jobs wait or run in this world, and find it by its name. Rename it when they have ended, or stop them."
@@ -119,7 +119,7 @@ class WorldEditForm(WorldForm):
 
     def _say_overtaken(self, name: str, stored: str) -> str:
         world = self.instance
-        entries = AuditEntry.objects.filter(world=world, what=WHAT["world_edit"])
+        entries = AuditEntry.objects.filter(world=world, what=DESCRIBES)
         last = entries.select_related("who").first()
         who = say_who(last.who if last else None, self._reader, f"saved another {name}")
         now = f"It is “{shorten(stored, LONGEST_SHOWN)}” now." if stored else "It is empty now."

@@ -21,6 +21,7 @@ from annotations.people.access import (
     PageRequest,
     WorldRequest,
     demand_site_admin,
+    plain_view,
     site_view,
     world_view,
 )
@@ -31,7 +32,7 @@ from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
-from annotations.web.worlds.world_forms import NewWorldForm, WorldEditForm
+from annotations.web.worlds.world_forms import DESCRIBES, NewWorldForm, WorldEditForm
 
 MOST_DIGITS = 19  # of a key that the database takes
 
@@ -56,7 +57,7 @@ class NameForm(forms.Form):
         return str(name)
 
 
-@site_view(READ_AND_WRITE)
+@site_view(READ_AND_WRITE, does="create a world")
 def world_new(request: PageRequest) -> HttpResponse:
     """Create a world, empty or with what comes with this project; files are imported into an empty one next."""
     form = NewWorldForm(posted(request))
@@ -68,7 +69,7 @@ def world_new(request: PageRequest) -> HttpResponse:
 
 
 @takes_files
-@site_view(READ_AND_WRITE)
+@site_view(READ_AND_WRITE, does="import a world")
 def world_import(request: PageRequest) -> HttpResponse:
     """Create a world from the archive of another one."""
     form = WorldArchiveForm(posted(request), request.FILES or None)
@@ -104,6 +105,7 @@ def download_part(request: WorldRequest, world: World, part: str) -> HttpRespons
     return file_of(world, part)
 
 
+@plain_view(READ_AND_WRITE, does=DESCRIBES)
 def world_edit(request: PageRequest, world: str) -> HttpResponseBase:
     """Rename a world, and describe it; also from a page that was opened before another admin renamed it."""
     key = request.POST.get("world", "")
@@ -113,7 +115,7 @@ def world_edit(request: PageRequest, world: str) -> HttpResponseBase:
     return _edit_world(request, world=world)
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does=DESCRIBES)
 def _edit_world(request: WorldRequest, world: World) -> HttpResponse:
     with transaction.atomic():
         # The frame goes on showing ``world``; of two admins who save at once, one is first.
@@ -131,7 +133,7 @@ def _edit_world(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "annotations/worlds/world_edit.html", {"form": form}, status=status)
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="delete the world")
 def world_delete(request: WorldRequest, world: World) -> HttpResponse:
     """Preview the deletion of a world, and delete it when its name has been typed."""
     demand_site_admin(request)

@@ -55,7 +55,7 @@ def trainable_parsers() -> list[str]:
 
 
 @may_take_long
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="train on people and on models")
 def paraphrase_runs_start(request: WorldRequest, world: World) -> HttpResponse:
     """Start a run on people's paraphrases and one on models'."""
     try:

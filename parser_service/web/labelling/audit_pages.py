@@ -26,7 +26,7 @@ from annotations.models import (
     WorkKind,
     World,
 )
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.occurrences import examples_of_pair
 from annotations.showing.listing import Listing, Sort, render_list
 from annotations.showing.paging import number_in
@@ -85,7 +85,7 @@ def audit_item(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     )
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="start a label audit")
 def audit_start(request: WorldRequest, world: World) -> HttpResponse:
     """Start an audit of the labels, or show the one that is queued or running."""
     form = AuditForm(request.POST)
@@ -98,7 +98,7 @@ def audit_start(request: WorldRequest, world: World) -> HttpResponse:
     return redirect("job", pk=request_audit(world, request.user, form.cleaned_data).pk)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="decide about a label")
 def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Keep, correct or exclude, and go on to the next label of the list."""
     finding = get_object_or_404(world.audit_findings, pk=pk)
@@ -125,7 +125,7 @@ def audit_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return _to(request, world, beyond.first() or rows.first())
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="take a decision back")
 def audit_take_back(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Undo a decision of this person, and show its label again."""
     made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
@@ -136,7 +136,7 @@ def audit_take_back(request: WorldRequest, world: World, pk: int) -> HttpRespons
     return _to(request, world, made.finding)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def audit_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
     finding = get_object_or_404(world.audit_findings, pk=pk)

@@ -25,7 +25,7 @@ from annotations.labelling.item_answers import (
 from annotations.labelling.label_queue import last_labels, next_utterance, progress_of
 from annotations.language.texts import Refusal, find_words
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.showing.listing import Listing
 from annotations.showing.paging import number_in
 from annotations.web.corpus.corpus_filters import UtteranceFilters
@@ -61,7 +61,7 @@ def label_item(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/labelling/_label_item.html", _item(request, row))
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="label")
 def label_answer(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Store an answer. 409 if the utterance has changed meanwhile, 422 if the answer is not valid."""
     row = get_object_or_404(world.utterances, pk=pk)
@@ -76,7 +76,7 @@ def label_answer(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return _reply(request, world, row)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="take a label back")
 def label_take_back(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Undo an answer of this person, and show its utterance again."""
     stored = get_object_or_404(Label.objects.of_world(world), pk=pk)
@@ -87,7 +87,7 @@ def label_take_back(request: WorldRequest, world: World, pk: int) -> HttpRespons
     return _reply(request, world, row, stays=True)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="send an utterance to be labelled")
 def label_send(request: WorldRequest, world: World) -> HttpResponse:
     """Add the utterance of a review, unless the world has it, and open it for labelling."""
     text = " ".join(request.POST.get("text", "").split())
@@ -99,14 +99,14 @@ def label_send(request: WorldRequest, world: World) -> HttpResponse:
     return redirect(f"{reverse('label', kwargs={'world': world.name})}?utterance={row.pk}")
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def label_check(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what is wrong with a form while somebody writes it."""
     row = get_object_or_404(world.utterances, pk=pk)
     return JsonResponse(check_label(world, row.anonymized_text, request.POST.get("form", "")))
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="correct what names an entity")
 def label_mend(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say which words of an utterance name which entity; the words become an alias of it."""
     row = get_object_or_404(world.utterances, pk=pk)

@@ -16,7 +16,7 @@ from parser_service.parsers.server_address import problem_of, server
 from parser_service.web.labelling.model_forms import ModelForm
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="ask a language model for paraphrases")
 def campaign_model(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Say what a language model is asked with; a POST starts the job."""
     campaign = get_object_or_404(world.campaigns, pk=pk)

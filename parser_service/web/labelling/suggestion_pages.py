@@ -7,12 +7,12 @@ from django.shortcuts import render
 
 from annotations.generation.suggesting import MOST_COMMAND
 from annotations.models import Duty, World
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.web.description.template_forms import TemplateForm
 from parser_service.labelling.pattern_suggestions import suggest_with_parsers
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does=NOTHING)
 def template_suggestions(request: WorldRequest, world: World) -> HttpResponse:
     """Suggest forms for the typed pattern, which was written for ``command``.
 

@@ -32,7 +32,7 @@ def analysis_state(request: WorldRequest, world: World, pk: int) -> HttpResponse
     return render(request, "parser_service/_analysis_state.html", context)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="analyse errors")
 def analysis_start(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start an analysis of the run, unless one is queued or running. A complete one is repeated."""
     run = get_object_or_404(world.runs.select_related("world"), pk=pk)
@@ -46,7 +46,7 @@ def analysis_start(request: WorldRequest, world: World, pk: int) -> HttpResponse
     return _back(request, run)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="cancel an error analysis")
 def analysis_cancel(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Stop the analysis; what it has found stays."""
     run = get_object_or_404(world.runs.select_related("world"), pk=pk)

@@ -34,7 +34,7 @@ def results_table(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/results/_results_table.html", results_of(request, world))
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="measure what a robot gets")
 def results_measure(request: WorldRequest, world: World) -> HttpResponse:
     """Start to measure what a robot gets, or show the measurement that waits or runs."""
     key = request.POST.get("split", "")

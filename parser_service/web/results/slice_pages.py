@@ -18,7 +18,7 @@ from parser_service.results.selecting import describe_query
 DELETED = "deleted_slice"  # in the session, until the page has offered to restore it
 
 
-@world_view(Duty.VIEW, methods=READ_AND_WRITE, write_duty=Duty.REVIEW)
+@world_view(Duty.VIEW, methods=READ_AND_WRITE, write_duty=Duty.REVIEW, does="save a slice")
 def slices(request: WorldRequest, world: World) -> HttpResponse:
     """List the saved slices; save one that another page chose."""
     if request.method == "POST":
@@ -41,7 +41,7 @@ def slices(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/results/slices.html", context)
 
 
-@world_view(Duty.REVIEW, methods=WRITE)
+@world_view(Duty.REVIEW, methods=WRITE, does="rename a slice")
 def slice_rename(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Give a slice another name."""
     saved = get_object_or_404(Slice, world=world, pk=pk)
@@ -52,7 +52,7 @@ def slice_rename(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return redirect("slices", world=world.name)
 
 
-@world_view(Duty.REVIEW, methods=WRITE)
+@world_view(Duty.REVIEW, methods=WRITE, does="delete a slice")
 def slice_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a slice; the next page offers to restore it."""
     saved = get_object_or_404(Slice, world=world, pk=pk)

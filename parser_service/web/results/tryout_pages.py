@@ -13,7 +13,7 @@ from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
 from annotations.models import Duty, Example, World
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
@@ -74,7 +74,7 @@ def tryout(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @never_cache
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the chosen runs about the text, and show what they have answered.
 

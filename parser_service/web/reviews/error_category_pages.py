@@ -26,7 +26,7 @@ from parser_service.web.reviews.error_category_forms import CategoryForm, Deleti
 STEPS = {"up": -1, "down": 1}
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE, does="add an error category")
 def error_categories(request: WorldRequest, world: World) -> HttpResponse:
     """List the error categories with their counts, of all runs or of the one that the address names."""
     form = CategoryForm(world, posted(request))
@@ -56,7 +56,7 @@ def error_categories(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/reviews/error_categories.html", context, status=status)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.MANAGE, does="change an error category")
 def error_category(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show one category; an admin renames it, describes it or lets a slice propose it."""
     category = get_object_or_404(world.error_categories.select_related("slice"), pk=pk)
@@ -89,7 +89,7 @@ def _category_page(
     return render(request, "parser_service/reviews/error_category.html", context, status=status)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="move an error category")
 def error_category_move(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Put a category one place up or down; its key on the review page follows."""
     category = get_object_or_404(world.error_categories, pk=pk)
@@ -97,7 +97,7 @@ def error_category_move(request: WorldRequest, world: World, pk: int) -> HttpRes
     return redirect("error_categories", world=world.name)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="delete an error category")
 def error_category_delete(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Delete a category and move its reviews to another one."""
     category = get_object_or_404(world.error_categories.select_related("world"), pk=pk)

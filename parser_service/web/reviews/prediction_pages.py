@@ -41,7 +41,7 @@ def listing_of(request: PageRequest, run: TrainingRun) -> Listing:
     return Listing(request, PredictionFilters, rows, SORTS, of_run=run)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="send answers to the work queue")
 def predictions_send(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Put what is behind the answers that pass the filters of the URL into the work queue."""
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)

@@ -84,7 +84,7 @@ def review(request: WorldRequest, world: World) -> HttpResponse:
     return render_list(request, "parser_service/reviews/review.html", context)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="tag an answer")
 def review_tag(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Tag the answer of one run, accept what is proposed, or take the reader's tag back."""
     sent = request.POST
@@ -103,7 +103,7 @@ def review_tag(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return _change(request, world, pk, change)
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="write a note on an answer")
 def review_note(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Keep the reader's note on the answer of one run; an empty one is removed."""
     note = request.POST.get("note", "")
@@ -112,7 +112,7 @@ def review_note(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     )
 
 
-@world_view(Duty.REVIEW, WRITE)
+@world_view(Duty.REVIEW, WRITE, does="doubt a label")
 def review_doubt(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Send the label of the example to the work queue."""
     sent = request.POST

@@ -62,7 +62,7 @@ def learning_curves_data(request: WorldRequest, world: World) -> JsonResponse:
     return JsonResponse({"series": [], "done": True})
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="start runs of a learning curve")
 def learning_curve_start(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start the missing runs of a run's learning curve, and show it."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)

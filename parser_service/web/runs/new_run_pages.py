@@ -43,7 +43,7 @@ from parser_service.web.runs.run_forms import GENERAL, PREFIX, RunForm
 MOST_RUNS = 200  # the newest that times are taken from
 
 
-@world_view(Duty.MANAGE, READ_AND_WRITE)
+@world_view(Duty.MANAGE, READ_AND_WRITE, does="start a run")
 def run_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that starts runs, and start them. If another parser than the one shown was chosen,
     its form opens instead."""
@@ -112,7 +112,7 @@ def split_runs(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "parser_service/runs/_split_runs.html", context)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="retrain a run")
 def run_retrain(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Start the configuration of a run on the newest split that follows its own."""
     run = get_object_or_404(

@@ -113,7 +113,7 @@ def run_curves(request: WorldRequest, world: World, pk: int) -> JsonResponse:
     return JsonResponse({**draw(list(run.epochs.all())), "done": run.is_ended})
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="cancel a run")
 def run_cancel(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Cancel a run."""
     run = get_object_or_404(TrainingRun, world=world, pk=pk)

@@ -28,7 +28,7 @@ YES_OR_NO = (Phase.CHECKING, Phase.LEARNING, Phase.CONFIRMING)
 MOST_DECIDED = 20
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, does="begin a dialogue")
 def dialogues(request: WorldRequest, world: World) -> HttpResponse:
     """List the last dialogues; a POST starts one."""
     text = request.POST.get("utterance", "")
@@ -49,7 +49,7 @@ def dialogues(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/serving/dialogues.html", context, status=status)
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE)
+@world_view(Duty.VIEW, READ_AND_WRITE, does="answer in a dialogue")
 def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Show a dialogue and the form so far. A POST answers."""
     row = get_object_or_404(Dialogue, world=world, pk=pk)
@@ -91,7 +91,7 @@ def dialogue(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     return render(request, "parser_service/serving/dialogue.html", context, status=status)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="keep a dialogue as an utterance")
 def dialogue_keep(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Make a labelled utterance of a dialogue that ended with a form."""
     row = get_object_or_404(Dialogue, world=world, pk=pk)
@@ -116,7 +116,7 @@ def offered_entities(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/serving/offered_entities.html", context)
 
 
-@world_view(Duty.ANNOTATE, WRITE)
+@world_view(Duty.ANNOTATE, WRITE, does="decide about a word from dialogues")
 def offered_entity_decide(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Confirm an offered entity, or refuse it."""
     row = get_object_or_404(OfferedEntity, world=world, pk=pk)

@@ -15,7 +15,7 @@ from annotations.language.plans import MOST_COMMANDS, JointPlan, say_length
 from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from parser_service.serving.joint_answers import commands_in, plan_together
 from parser_service.serving.parser_client import ParserAway
 from parser_service.web.serving.curl_commands import curl_command
@@ -43,7 +43,7 @@ def joint_plan(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @never_cache
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def joint_plan_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the commands, and show one plan of them."""
     texts = {name: text for name in FIELDS if (text := _text_of(request.POST, name))}

@@ -18,7 +18,7 @@ from annotations.language.plans import MOST_COMMANDS
 from annotations.language.texts import Refusal
 from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
-from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import ready_templates
 from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
@@ -64,7 +64,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
 
 
 @never_cache
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
 def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the text, and show its answer."""
     text, (run, parser) = _text_of(request.POST), _alone_in(request.POST)
@@ -92,7 +92,7 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     return replace_url(response, f"{address}?{query}" if query else address)
 
 
-@world_view(Duty.VIEW, WRITE)
+@world_view(Duty.VIEW, WRITE, does="report a wrong answer")
 def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     """Send an utterance that was answered wrongly to the work queue, with the right form if one is given."""
     sent = request.POST

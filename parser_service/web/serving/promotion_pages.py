@@ -85,7 +85,7 @@ def promotions(request: WorldRequest, world: World) -> HttpResponse:
     return render(request, "parser_service/serving/promotions.html", context)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="promote a run")
 def promotion_promote(request: WorldRequest, world: World) -> HttpResponse:
     """Promote a run."""
     run = get_object_or_404(
@@ -104,7 +104,7 @@ def promotion_promote(request: WorldRequest, world: World) -> HttpResponse:
     return _decide(request, world, decide)
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="roll back to the run before")
 def promotion_roll_back(request: WorldRequest, world: World) -> HttpResponse:
     """Roll back to the run that was promoted before the present one."""
     reason, before = request.POST.get("reason", ""), previous_run(world)
@@ -112,14 +112,14 @@ def promotion_roll_back(request: WorldRequest, world: World) -> HttpResponse:
     return _decide(request, world, lambda: roll_back(world, request.user, reason))
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="decline a proposed run")
 def promotion_decline(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Decline a proposal; the present run goes on answering."""
     proposal = get_object_or_404(Promotion, world=world, pk=pk)
     return _decide(request, world, lambda: decline(world, proposal.pk, request.user))
 
 
-@world_view(Duty.MANAGE, WRITE)
+@world_view(Duty.MANAGE, WRITE, does="choose what answers")
 def answering(request: WorldRequest, world: World) -> HttpResponse:
     """Choose which parts answer, and the share of wrong acts that is allowed; the message offers to undo it."""
     sent, before = request.POST, answering_of(world)

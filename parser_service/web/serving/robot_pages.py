@@ -48,7 +48,7 @@ class ActionRow:
     is_name_wrong: bool = False
 
 
-@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE)
+@world_view(Duty.VIEW, READ_AND_WRITE, write_duty=Duty.ANNOTATE, does="name actions")
 def robot(request: WorldRequest, world: World) -> HttpResponse:
     """Show the names of the actions; annotators change them, all at once."""
     actions, version = actions_of(world), version_of(world)

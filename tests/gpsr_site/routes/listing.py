@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from django.urls import URLPattern, URLResolver, get_resolver
 
@@ -40,18 +41,23 @@ class ApiRoute:
         return self.actions.get(method.lower(), method.upper())
 
 
-def list_api_routes(patterns, namespace: str = "") -> Iterator[tuple[str, ApiRoute]]:
-    """Yield every route of the API by name."""
+def list_views(patterns, namespace: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield name and view of every route but those of Django's admin."""
     for pattern in patterns:
         if isinstance(pattern, URLResolver):
             inside = f"{pattern.namespace}:" if pattern.namespace else namespace
-            yield from list_api_routes(pattern.url_patterns, inside)
-        elif isinstance(pattern, URLPattern) and namespace == "api:":
-            actions = getattr(pattern.callback, "actions", {})
-            yield f"{namespace}{pattern.name}", ApiRoute(pattern.callback.cls, actions)
+            if pattern.namespace != "admin":
+                yield from list_views(pattern.url_patterns, inside)
+        elif isinstance(pattern, URLPattern):
+            yield f"{namespace}{pattern.name}", pattern.callback
 
 
 ALL_ROUTES = dict(list_routes(get_resolver().url_patterns))
-API_ROUTES = dict(list_api_routes(get_resolver().url_patterns))
+VIEWS = dict(list_views(get_resolver().url_patterns))
+API_ROUTES = {
+    name: ApiRoute(view.cls, getattr(view, "actions", {}))
+    for name, view in VIEWS.items()
+    if name.startswith("api:")
+}
 ROUTES_OF_WORLDS = {name for name, path in ALL_ROUTES.items() if "<slug:world>" in path}
 ROUTES_OF_ROWS = sorted(name for name in ROUTES_OF_WORLDS if "<int:" in ALL_ROUTES[name])

@@ -24,6 +24,7 @@ UNSAVED = NoRoute("It keeps what somebody has typed and not saved, for the next 
 PEOPLE_ALONE = NoRoute(
     "It is for people without an account; what a program writes comes by a file."
 )
+NOUNS = ("template", "entity", "entity_class", "predicate", "production", "recipe", "primitive")
 
 PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # One's account
@@ -73,28 +74,16 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "job_cancel": "post job-cancel, post site-job-cancel",
     "job_answer": "post job-answer",
     # What annotators write, and what is said of it before it is stored
-    "entity_new": "post entity-list",
+    **{noun: f"patch {noun.replace('_', '-')}-detail" for noun in NOUNS},
+    **{f"{noun}_new": f"post {noun.replace('_', '-')}-list" for noun in NOUNS},
     "entities_new": "post entity-list",
     "location_rooms": "patch entity-detail",
-    "entity": "patch entity-detail",
-    "entity_class_new": "post entity-class-list",
-    "entity_class": "patch entity-class-detail",
-    "recipe_new": "post recipe-list",
-    "recipe": "patch recipe-detail",
     "recipe_preview": "post check-recipe",
-    "primitive_new": "post primitive-list",
-    "primitive": "patch primitive-detail",
     "primitive_preview": "post check-primitive",
     "recipe_book": "patch recipe-book",
-    "predicate_new": "post predicate-list",
-    "predicate": "patch predicate-detail",
     "predicate_preview": "post check-predicate",
-    "production_new": "post production-list",
-    "production": "patch production-detail",
     "production_check": "post check-production",
     "production_preview": "post check-production",
-    "template_new": "post template-list",
-    "template": "patch template-detail",
     "template_duplicate": "post template-list",
     "template_repair": "patch template-detail, delete template-detail",
     "template_check": "post check-template",

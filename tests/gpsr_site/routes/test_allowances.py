@@ -8,30 +8,15 @@ from pathlib import Path
 
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
-from django.urls import URLPattern, URLResolver, get_resolver
 from rest_framework.parsers import FileUploadParser, MultiPartParser
 
 from annotations.people.allowances import allowance_at
 from gpsr_site import web
 from gpsr_site.web.body_limits import ORDINARY_BYTES
 from tests.gpsr_site.routes.addresses import address
-from tests.gpsr_site.routes.listing import ALL_ROUTES, ApiRoute
+from tests.gpsr_site.routes.listing import ALL_ROUTES, VIEWS, ApiRoute
 
 TOO_MUCH = 413
-
-
-def views_of(patterns, namespace: str = ""):
-    """Yield name and callback of every route but those of Django's admin."""
-    for pattern in patterns:
-        if isinstance(pattern, URLResolver):
-            inside = f"{pattern.namespace}:" if pattern.namespace else namespace
-            if pattern.namespace != "admin":
-                yield from views_of(pattern.url_patterns, inside)
-        elif isinstance(pattern, URLPattern):
-            yield f"{namespace}{pattern.name}", pattern.callback
-
-
-VIEWS = dict(views_of(get_resolver().url_patterns))
 
 
 def reads_files(view) -> bool:
