@@ -16,7 +16,7 @@ from annotations.web.rest.problem_details import refusal_of_form
 from annotations.web.rest.routes import WorldRoute
 from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.labelling.model_contributor import request_paraphrases
-from parser_service.parsers.llm.protocol import MOST_NAME
+from parser_service.parsers.model_server.protocol import MOST_NAME
 from parser_service.web.labelling.model_forms import (
     LARGEST_SEED,
     MOST_REQUESTS,
