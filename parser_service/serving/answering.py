@@ -14,8 +14,7 @@ from annotations.rows.from_rows import ready_templates
 from parser_service.models import Answering, AnsweringOrder, TrainingRun
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.registry import ORACLE, needing, title_of
-from parser_service.parsers.registry_entry import Needs
+from parser_service.parsers.registry import ORACLE, Needs, needing, title_of
 from parser_service.parsers.server_address import problem_of, server
 from parser_service.runs.promoting import last_part, last_runs, learned_part
 from parser_service.serving.calibrating import Calibrated, calibrated
