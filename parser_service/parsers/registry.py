@@ -10,7 +10,7 @@ import logging
 from collections.abc import Mapping
 from dataclasses import asdict
 from importlib import import_module
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from annotations.language.texts import Refusal
@@ -176,8 +176,7 @@ def _registered() -> dict[str, RegistryEntry]:
     """Return the parsers that installed packages register. Those of a package that cannot be read are left out, and
     the log says so: all others go on."""
     added: dict[str, RegistryEntry] = {}
-    for point in sorted(entry_points(group=GROUP), key=lambda each: (str(each.dist), each.name)):
-        package = point.dist.name if point.dist else "?"
+    for point in sorted(entry_points(group=GROUP), key=lambda each: (_package_of(each), each.name)):
         try:
             entries = dict(point.load())
             for name, each in entries.items():
@@ -185,13 +184,17 @@ def _registered() -> dict[str, RegistryEntry]:
         except Exception as error:  # whatever the code of others raises
             logger.warning(
                 "The parsers that the package %s registers as %s cannot be used: %s. All others go on.",
-                package,
+                _package_of(point),
                 point.value,
                 error,
             )
         else:
             added |= entries
     return added
+
+
+def _package_of(point: EntryPoint) -> str:
+    return point.dist.name if point.dist else ""
 
 
 def _check(name: str, entry: RegistryEntry, taken: Mapping[str, RegistryEntry]) -> None:
