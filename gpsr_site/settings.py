@@ -364,11 +364,12 @@ PARSER_SECRET = env.str("PARSER_SECRET", default="") or read_or_make_secret_key(
 # What runs that were asked but not promoted may take in the server's memory.
 PARSER_MEMORY_MB = env.int("PARSER_MEMORY_MB", default=2_000)
 
-# What the parser "llm" asks. The key is read here, and stands in no row and no log.
+# The language model's server. The key is read here, and stands in no row and no log.
 LLM_URL = env.str("GPSR_LLM_URL", default="").strip()
 LLM_KEY = env.str("GPSR_LLM_KEY", default="").strip()
 LLM_MAY_BE_REMOTE = env.bool("GPSR_LLM_REMOTE", default=False)
 LLM_SECONDS = env.float("GPSR_LLM_SECONDS", default=120)
+LLM_ANSWERS_DIR = VAR_DIR / "llm"  # what it answered
 
 # --- Log: on standard error ---
 

@@ -52,6 +52,6 @@ class ParserServiceConfig(WorkbenchApp):
                 settings.LLM_KEY,
                 settings.LLM_MAY_BE_REMOTE,
                 Patience(answer=settings.LLM_SECONDS),
-                settings.VAR_DIR / "llm",
+                settings.LLM_ANSWERS_DIR,
             )
         )

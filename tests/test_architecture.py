@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import os
 import re
 import subprocess
 import sys
+import tomllib
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -51,8 +53,10 @@ ROOMS = {
         "parsers", "analysis", "neural", "models", "runs", "serving", "labelling", "results", "reviews",
         "benchmarking", "web", "templatetags", "management",
     ),
-    "parser_service/parsers": ("hyperparameters", "llm"),
-    "parser_service/neural": ("sentence_encoder", "t5", "word_vectors", "ranker", "seq2seq"),
+    "parser_service/parsers": ("hyperparameters", "model_server", "llm"),
+    "parser_service/neural": (
+        "sentence_encoder", "t5", "word_vectors", "ranker", "seq2seq", "elmo", "gpt",
+    ),
     "parser_service/web": ("runs", "serving", "labelling", "results", "reviews"),
     "gpsr_site": (
         "sqlite", "web", "accounts", "overview", "pages", "templatetags", "backup", "management",
@@ -82,6 +86,14 @@ def _is_ours(node: ast.ImportFrom, alias: ast.alias) -> bool:
     return (ROOT / node.module.replace(".", "/") / alias.name).with_suffix(".py").is_file() or (
         ROOT / node.module.replace(".", "/") / alias.name
     ).is_dir()
+
+
+@cache
+def strings_of(path: Path) -> set[str]:
+    """The texts that a module writes as they are."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    constants = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    return {each for each in constants if isinstance(each, str)}
 
 
 def dotted(path: Path) -> str:
@@ -201,6 +213,33 @@ def test_a_network_imports_nothing_of_another_one():
             for name in imports_of(path):
                 room = name.removeprefix("parser_service.neural.").split(".")[0]
                 assert room not in networks - {network}, f"{path} imports {name}"
+
+
+def registered_modules() -> list[str]:
+    """The modules that give the rows which are registered by entry points, as a third party's would be."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    points = project["entry-points"]["gpsr_workbench.parsers"].values()
+    return [each.partition(":")[0] for each in points]
+
+
+@pytest.mark.parametrize("module", registered_modules())
+def test_nothing_knows_a_parser_that_an_entry_point_registers(module):
+    package = module.rpartition(".")[0]
+    rows = importlib.import_module(module).PARSERS
+    for folder in OURS:
+        for path in modules_below(folder):
+            if ROOT / package.replace(".", "/") in path.parents:
+                continue
+            for name in imports_of(path):
+                assert not f"{name}.".startswith(f"{package}."), f"{path} imports {name}"
+            if folder != "gpsr_site":  # the settings name folders
+                assert not strings_of(path) & rows.keys(), path
+
+
+@pytest.mark.parametrize("module", registered_modules())
+def test_what_an_entry_point_registers_loads_no_torch(module):
+    script = f"import sys, {module}; sys.exit('torch' in sys.modules)"
+    subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True)
 
 
 @pytest.mark.parametrize("folder", OURS)

@@ -29,8 +29,8 @@ from transformers import (
 
 from benchmarks.fresh_site import DATA
 from parser_service.benchmarking.corpus import read_corpus
+from parser_service.neural.t5.config import EncoderDecoderConfig
 from parser_service.neural.t5.t5_parser import T5
-from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import Observer, Pair
 
 SPECIAL = ["<pad>", "</s>", "<unk>", "<s>"]

@@ -19,7 +19,7 @@ from benchmarks.fresh_site import DATA, WORLD, Site
 
 if TYPE_CHECKING:
     from parser_service.parsers.interface import Knowledge, Pair
-    from parser_service.parsers.llm.protocol import Question
+    from parser_service.parsers.model_server.protocol import Question
 
 SOURCES = ("generated", "paraphrased")
 FORMS = (6, 12, 24, 48)

@@ -24,9 +24,9 @@ from annotations.language.corpus import check_instructions, rewrite_request, rew
 from annotations.language.texts import Refusal
 from annotations.models import Campaign, Job, JobKind, User
 from annotations.models.campaigns import SubmissionStatus
-from parser_service.parsers.llm.asker import Asker
-from parser_service.parsers.llm.exchange import NoAnswer
-from parser_service.parsers.llm.protocol import Question
+from parser_service.parsers.model_server.asker import Asker
+from parser_service.parsers.model_server.exchange import NoAnswer
+from parser_service.parsers.model_server.protocol import Question
 from parser_service.parsers.server_address import problem_of, server
 
 AT_ONCE = 4  # questions that the server has at a time

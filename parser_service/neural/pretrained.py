@@ -17,7 +17,6 @@ from parser_service.parsers.pretrained_files import CONFIG, TOKENIZERS, WEIGHTS,
 from parser_service.parsers.storage import file_hash
 
 if TYPE_CHECKING:
-    from tokenizers import Tokenizer
     from transformers import PreTrainedModel, PreTrainedTokenizerFast
 
 UNUSED = "pooler."  # a layer above the last one, which nothing here reads
@@ -32,56 +31,27 @@ class Pretrained:
     folder: Path
 
 
-@dataclass(frozen=True, slots=True)
-class PretrainedWriter:
-    """A published encoder–decoder: its network, and its tokenizer as ``tokenizer.json`` holds it."""
-
-    model: PreTrainedModel
-    tokenizer: Tokenizer
-    folder: Path
-
-
 def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
     """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises Refusal."""
     folder = find_encoder(name, encoders)
     # Importing it takes seconds, and a saved ranker answers without it.
     from transformers import AutoModel, AutoTokenizer, PreTrainedTokenizerFast
 
-    with _read_or_refused(folder, "encoder"):
+    with read_or_refused(folder, "encoder"):
         tokenizer = AutoTokenizer.from_pretrained(
             folder, local_files_only=True, trust_remote_code=False
         )
-        model, report = _read_model(AutoModel, folder)
+        model, report = read_model(AutoModel, folder)
     if not isinstance(tokenizer, PreTrainedTokenizerFast):
         raise Refusal(
             f"{folder} holds no tokenizer.json that can be read. Put that file there.",
             "pretrained_weights_unreadable",
         )
-    _refuse_gaps(folder, report["missing_keys"])
+    refuse_gaps(folder, report["missing_keys"])
     return Pretrained(model, tokenizer, folder)
 
 
-def load_encoder_decoder(name: str, encoders: Path | None = None) -> PretrainedWriter:
-    """Load the encoder–decoder ``name`` (T5, FLAN-T5, BART and their like) in single precision, from where
-    ``find_encoder`` finds it. Raises Refusal."""
-    folder = find_encoder(name, encoders)
-    import torch
-    from tokenizers import Tokenizer
-    from transformers import AutoModelForSeq2SeqLM
-
-    if not (folder / TOKENIZERS[0]).is_file():
-        raise Refusal(
-            f"{folder} holds no {TOKENIZERS[0]}. Put the one of the same model there.",
-            "pretrained_weights_unreadable",
-        )
-    with _read_or_refused(folder, "encoder–decoder"):
-        tokenizer = Tokenizer.from_file(str(folder / TOKENIZERS[0]))
-        model, report = _read_model(AutoModelForSeq2SeqLM, folder, dtype=torch.float32)
-    _refuse_gaps(folder, report["missing_keys"])
-    return PretrainedWriter(model, tokenizer, folder)
-
-
-def _read_model(
+def read_model(
     factory: Any, folder: Path, **options: Any
 ) -> tuple[PreTrainedModel, dict[str, Collection[str]]]:
     """Return the network in ``folder``, and which weights its file lacks, among others."""
@@ -102,7 +72,7 @@ def _read_model(
 
 
 @contextmanager
-def _read_or_refused(folder: Path, what: str) -> Iterator[None]:
+def read_or_refused(folder: Path, what: str) -> Iterator[None]:
     """Make a Refusal of whatever transformers and its parts raise inside the block."""
     try:
         yield
@@ -120,7 +90,7 @@ def encoder_hash(folder: Path) -> str:
     return sha256("\n".join(hashes).encode()).hexdigest()
 
 
-def _refuse_gaps(folder: Path, absent: Collection[str]) -> None:
+def refuse_gaps(folder: Path, absent: Collection[str]) -> None:
     """Refuse a file without all weights: transformers would draw them at random without a word. Raises
     Refusal."""
     used = sorted(name for name in absent if not name.startswith(UNUSED))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from annotations.language.texts import Refusal
+from parser_service.parsers.hyperparameters.fields import describe
 from parser_service.parsers.server_address import ADDRESS, problem_of, server
 
 CONFIG = "config.json"
@@ -25,12 +26,6 @@ TOKENIZERS = ("tokenizer.json", "vocab.txt")
 _encoders: Path | None = None
 _vectors: Path | None = None
 _packages: frozenset[str] = frozenset()
-OPTIONS_ENDING = "options.json"
-WEIGHTS_ENDING = "weights.hdf5"
-ELMO_SOURCE = (
-    "elmo_2x4096_512_2048cnn_2xhighway_options.json and "
-    "elmo_2x4096_512_2048cnn_2xhighway_weights.hdf5 as AllenNLP published them"
-)
 
 
 def keep_encoders_in(
@@ -142,21 +137,13 @@ def _refuse_incomplete(folder: Path) -> None:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class ElmoFiles:
-    """The two files of an ELMo."""
-
-    options: Path
-    weights: Path
-
-
 def find_glove(name: str, encoders: Path | None = None, anywhere: bool = True) -> Path:
     """Return GloVe's text file ``name``, plain or gzipped: in the folder ``encoders`` or, ``anywhere``,
     under any other path.
 
     Raises Refusal, a sentence that says what to put where.
     """
-    for folder in _folders(encoders, anywhere):
+    for folder in folders_of_names(encoders, anywhere):
         for path in (folder / name, folder / f"{name}.gz"):
             if path.is_file():
                 return path
@@ -168,32 +155,13 @@ def find_glove(name: str, encoders: Path | None = None, anywhere: bool = True) -
     )
 
 
-def find_elmo(name: str, encoders: Path | None = None, anywhere: bool = True) -> ElmoFiles:
-    """Return the files of the ELMo in the folder ``name``: inside ``encoders`` or, ``anywhere``, under
-    any other path.
-
-    Raises Refusal, a sentence that says what to put where.
-    """
-    for folder in _folders(encoders, anywhere):
-        options = sorted((folder / name).glob(f"*{OPTIONS_ENDING}"))
-        weights = sorted((folder / name).glob(f"*{WEIGHTS_ENDING}"))
-        if len(options) == len(weights) == 1:
-            return ElmoFiles(options[0], weights[0])
-    raise Refusal(
-        f"There is no ELMo: {name} is no folder{inside(encoders)} with one file *{OPTIONS_ENDING} "
-        f"and one file *{WEIGHTS_ENDING}. Put {ELMO_SOURCE} into "
-        f"{(encoders or Path('ENCODERS')) / name}.",
-        "pretrained_weights_missing",
-    )
-
-
 def missing_weights(config: Any, encoders: Path | None = None, anywhere: bool = True) -> str | None:
     """Return what a parser with this configuration lacks before it can be trained, and where to put it.
 
     None where nothing is missing. ``encoders`` is the installation's folder of encoders unless
     given; ``anywhere`` is False for requests from pages and the REST API, which look there and in
-    the listed packages alone. The fields ``glove``, ``elmo`` and ``encoder`` name weights; an empty
-    name needs none. A configuration with ``needs_server`` needs one that may be asked.
+    the listed packages alone. Hyperparameters with ``finds`` name weights; an empty name needs none. A
+    configuration with ``needs_server`` needs one that may be asked.
     """
     return " ".join(each.sentence for each in find_gaps(config, encoders, anywhere)) or None
 
@@ -212,16 +180,16 @@ def find_gaps(config: Any, encoders: Path | None = None, anywhere: bool = True) 
     gaps = []
     if getattr(config, "needs_server", False) and (sentence := problem_of(server())):
         gaps.append(Gap(ADDRESS, sentence))
-    for field, find in (("glove", find_glove), ("elmo", find_elmo), ("encoder", find_encoder)):
-        if name := getattr(config, field, ""):
+    for field in describe(type(config)):
+        if field.finds and (name := getattr(config, field.name)):
             try:
                 if not anywhere:
-                    refuse_path(field, name)
-                find(name, encoders, anywhere)
+                    refuse_path(field.name, name)
+                field.finds(name, encoders, anywhere)
             except Refusal as error:
                 gaps.append(Gap(name, error.message))
             except OSError as error:  # a name longer than the system allows, say
-                sentence = f"{field} cannot be looked for: {error.strerror or error}."
+                sentence = f"{field.name} cannot be looked for: {error.strerror or error}."
                 gaps.append(Gap(name, sentence))
     return gaps
 
@@ -232,6 +200,6 @@ def refuse_missing_weights(config: Any, anywhere: bool = True) -> None:
         raise Refusal(sentence, "requirement_missing")
 
 
-def _folders(encoders: Path | None, anywhere: bool) -> list[Path]:
+def folders_of_names(encoders: Path | None, anywhere: bool) -> list[Path]:
     """Return the folders that names start from; the installation's comes first."""
     return [*([encoders] if encoders else []), *([Path()] if anywhere else [])]

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from annotations.language.corpus import Overlap, together
 from parser_service.parsers.conditions import GENERATED, Protocol
 from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry_entry import Expectation
 
 ENOUGH_PAIRS = 100  # to train more than the nearest neighbour
 MANY_PARAPHRASES = 200  # "some hundred": from here on they teach more than glosses do
@@ -121,45 +122,10 @@ MEASURED = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Expectation:
-    """What to expect of a parser: exact match of generated commands and of what people say, fractions of 1, None
-    where nobody has measured it. Or ``instead``, a text. Then how long a training takes and the memory it needs."""
-
-    generated: float | None = None
-    said: float | None = None
-    instead: str = ""
-    time: str = ""
-    memory: str = ""
-
-    @property
-    def accuracy(self) -> str:
-        """The figures in words; empty where there are none."""
-        shares = ((self.generated, "generated commands"), (self.said, "what people say"))
-        shown = [f"{100 * share:.0f} % of {words}" for share, words in shares if share is not None]
-        return self.instead or "; ".join(shown)
-
-
-RANKER_TIME, RANKER_MEMORY = "minutes on 2 cores", "2 GB"
-# What does not depend on the split.
-EXPECTED = {
-    "grammar-oracle": Expectation(1.0, 0.07, time="no training"),
-    "knn": Expectation(time="a second"),
-    "linear": Expectation(time="seconds", memory="0.5 GB"),
-    "ranker": Expectation(time=RANKER_TIME, memory=RANKER_MEMORY),
-    "seq2seq": Expectation(time="minutes on 1 core", memory="0.4 GB"),
-    "seq2seq-minilm": Expectation(time="a minute on 1 core", memory="0.6 GB"),
-    "seq2seq-glove": Expectation(time="minutes on 1 core", memory="0.4 GB"),
-    "t5": Expectation(
-        instead="that of the weights you bring", time="depends on them", memory="8 GB or a GPU"
-    ),
-    "llm": Expectation(instead="that of the model", time="no training; seconds an answer"),
-}
-
-
 def expectation_of(parser: str, material: TrainingMaterial) -> Expectation | None:
     """Return what to expect of a parser with this material; None where nobody has measured it."""
-    expected, measured = EXPECTED.get(parser), MEASURED.get(parser)
+    expected = PARSERS[parser].expected if parser in PARSERS else None
+    measured = MEASURED.get(parser)
     if expected is None or measured is None:
         return expected
     return replace(

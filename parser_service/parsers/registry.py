@@ -1,64 +1,29 @@
-"""The parsers by name. It holds paths, not classes: importing it loads neither torch nor a parser."""
+"""The parsers by name: those that come with this package, and those that installed packages register.
+
+It holds paths, not classes: importing it loads neither torch nor a parser.
+"""
 
 from __future__ import annotations
 
 import gc
+import logging
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from enum import StrEnum
+from dataclasses import asdict
 from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.hyperparameters.fields import ConfigField, describe, read_config
 from parser_service.parsers.interface import Parser
+from parser_service.parsers.registry_entry import QUEUES, Expectation, Needs, RegistryEntry
 
+logger = logging.getLogger(__name__)
 
-class Needs(StrEnum):
-    """What a parser needs most before it can be trained."""
-
-    NOTHING = "nothing"
-    CPU = "minutes on a CPU"
-    GPU = "a GPU recommended"
-    WEIGHTS = "weights to bring"
-    SERVER = "a server to ask"
-
-
-@dataclass(frozen=True, slots=True)
-class RegistryEntry:
-    """One parser as pages, the worker and the command line see it.
-
-    ``in_short`` says in one plain sentence what it does, ``description`` how.
-
-    ``dotted`` is the path of its class (which may import torch), ``config`` of its hyperparameters
-    (which may not); ``queue`` names the workers that may run it: ``quick`` where training takes seconds and
-    needs no torch, otherwise ``cpu`` or ``gpu``. ``loss_unit`` is that of the losses it reports.
-    ``learns`` is False where training pairs change nothing, ``writes_new_forms`` where it never answers with a
-    form that no training pair has.
-    ``may_know_corpora`` marks figures of a model that may have read a public corpus, test part and all,
-    before anybody trained it here. ``most_subwords`` is how many it reads of an utterance, 0 where it reads
-    all or where that is up to its weights.
-    """
-
-    dotted: str
-    config: str
-    title: str
-    description: str
-    version: int
-    protocols: tuple[Protocol, ...]
-    in_short: str = ""
-    needs: Needs = Needs.CPU
-    queue: str = "cpu"
-    loss_unit: str = "nats a token"
-    learns: bool = True
-    writes_new_forms: bool = True
-    may_know_corpora: bool = False
-    most_subwords: int = 0
-
-
+GROUP = "gpsr_workbench.parsers"  # of entry points: each names a dict like this one
 ORACLE = "grammar-oracle"
-PARSERS: dict[str, RegistryEntry] = {
+SHIPPED: dict[str, RegistryEntry] = {
     ORACLE: RegistryEntry(
         dotted="parser_service.parsers.oracle.GrammarOracle",
         config="parser_service.parsers.oracle.OracleConfig",
@@ -71,6 +36,13 @@ PARSERS: dict[str, RegistryEntry] = {
         needs=Needs.NOTHING,
         queue="quick",
         learns=False,
+        expected=Expectation(1.0, 0.07, time="no training"),
+        published={
+            ("gen", "gen"): (100.0, 100.0),
+            ("gen", "para"): (1.1, 0.9),
+            ("para", "para"): (1.1, 0.9),
+            ("gen+para", "para"): (1.1, 0.9),
+        },
     ),
     "knn": RegistryEntry(
         dotted="parser_service.parsers.knn.NearestNeighbour",
@@ -84,6 +56,13 @@ PARSERS: dict[str, RegistryEntry] = {
         needs=Needs.NOTHING,
         queue="quick",
         writes_new_forms=False,
+        expected=Expectation(time="a second"),
+        published={
+            ("gen", "gen"): (63.0, 0.0),
+            ("gen", "para"): (42.0, 0.0),
+            ("para", "para"): (42.8, 0.0),
+            ("gen+para", "para"): (49.8, 0.0),
+        },
     ),
     "linear": RegistryEntry(
         dotted="parser_service.parsers.linear.LinearClassifier",
@@ -97,6 +76,7 @@ PARSERS: dict[str, RegistryEntry] = {
         needs=Needs.NOTHING,
         queue="quick",
         writes_new_forms=False,
+        expected=Expectation(time="seconds", memory="0.5 GB"),
     ),
     "seq2seq": RegistryEntry(
         dotted="parser_service.neural.seq2seq.seq2seq_parser.Seq2Seq",
@@ -107,6 +87,13 @@ PARSERS: dict[str, RegistryEntry] = {
         version=1,
         protocols=(Protocol.STRICT,),
         in_short="A small neural network that writes the form word by word; the paper's baseline.",
+        expected=Expectation(time="minutes on 1 core", memory="0.4 GB"),
+        published={
+            ("gen", "gen"): (95.9, 0.0),
+            ("gen", "para"): (13.0, 0.0),
+            ("para", "para"): (64.4, 0.0),
+            ("gen+para", "para"): (79.6, 0.0),
+        },
     ),
     "seq2seq-glove": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGlove",
@@ -118,27 +105,13 @@ PARSERS: dict[str, RegistryEntry] = {
         protocols=(Protocol.STRICT,),
         in_short="The same network with GloVe word vectors.",
         needs=Needs.WEIGHTS,
-    ),
-    "seq2seq-glove-elmo": RegistryEntry(
-        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveElmo",
-        config="parser_service.parsers.hyperparameters.vectors.GloveElmoConfig",
-        title="Seq2seq + GloVe, ELMo",
-        description="Sequence to sequence with GloVe and, frozen, the layers of ELMo under a "
-        "learned mix.",
-        version=1,
-        protocols=(Protocol.STRICT,),
-        in_short="The same network with GloVe and ELMo; the first pass over the texts is slow on a CPU.",
-        needs=Needs.WEIGHTS,
-    ),
-    "seq2seq-glove-gpt": RegistryEntry(
-        dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveGpt",
-        config="parser_service.parsers.hyperparameters.vectors.GloveGptConfig",
-        title="Seq2seq + GloVe, GPT",
-        description="Sequence to sequence with GloVe and, frozen, the last layer of OpenAI's GPT.",
-        version=1,
-        protocols=(Protocol.STRICT,),
-        in_short="The same network with GloVe and OpenAI's first GPT.",
-        needs=Needs.WEIGHTS,
+        expected=Expectation(time="minutes on 1 core", memory="0.4 GB"),
+        published={
+            ("gen", "gen"): (98.8, 26.3),
+            ("gen", "para"): (12.4, 0.0),
+            ("para", "para"): (70.2, 0.0),
+            ("gen+para", "para"): (85.3, 6.3),
+        },
     ),
     "seq2seq-glove-bert-base": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertBase",
@@ -149,6 +122,12 @@ PARSERS: dict[str, RegistryEntry] = {
         protocols=(Protocol.STRICT,),
         in_short="The same network with GloVe and BERT base.",
         needs=Needs.WEIGHTS,
+        published={
+            ("gen", "gen"): (96.3, 56.9),
+            ("gen", "para"): (12.2, 3.3),
+            ("para", "para"): (75.4, 31.3),
+            ("gen+para", "para"): (87.6, 37.6),
+        },
     ),
     "seq2seq-glove-bert-large": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqGloveBertLarge",
@@ -159,6 +138,12 @@ PARSERS: dict[str, RegistryEntry] = {
         protocols=(Protocol.STRICT,),
         in_short="The same network with GloVe and BERT large; a GPU is recommended.",
         needs=Needs.WEIGHTS,
+        published={
+            ("gen", "gen"): (97.9, 54.7),
+            ("gen", "para"): (27.1, 9.6),
+            ("para", "para"): (78.5, 30.4),
+            ("gen+para", "para"): (89.4, 37.6),
+        },
     ),
     "seq2seq-minilm": RegistryEntry(
         dotted="parser_service.neural.seq2seq.rows.Seq2SeqMiniLm",
@@ -169,6 +154,7 @@ PARSERS: dict[str, RegistryEntry] = {
         version=1,
         protocols=(Protocol.STRICT,),
         in_short="The small network with a sentence encoder that comes with this installation.",
+        expected=Expectation(time="a minute on 1 core", memory="0.6 GB"),
     ),
     "ranker": RegistryEntry(
         dotted="parser_service.neural.ranker.form_ranker.FormRanker",
@@ -181,32 +167,61 @@ PARSERS: dict[str, RegistryEntry] = {
         in_short="Chooses the form that fits best among known and new ones; needs few pairs of each form.",
         loss_unit="nats an utterance",
         most_subwords=64,
-    ),
-    "t5": RegistryEntry(
-        dotted="parser_service.neural.t5.t5_parser.T5",
-        config="parser_service.parsers.hyperparameters.t5.EncoderDecoderConfig",
-        title="Encoder–decoder (T5, BART)",
-        description="Fine-tunes a pretrained encoder–decoder to write forms; what it may write is "
-        "free, one of a list of forms, or whatever the signatures of predicates allow.",
-        version=1,
-        protocols=(Protocol.STRICT, Protocol.DOMAIN),
-        in_short="Fine-tunes a T5 or BART that you bring to write the form; a GPU is recommended.",
-        needs=Needs.WEIGHTS,
-    ),
-    "llm": RegistryEntry(
-        dotted="parser_service.parsers.llm.language_model.LanguageModel",
-        config="parser_service.parsers.llm.config.LanguageModelConfig",
-        title="Language model",
-        description="Asks a language model over HTTP, with the nearest training pairs as examples. It "
-        "chooses among their forms, action by action where these are sequences, or writes one; it learns "
-        "nothing here.",
-        version=2,
-        protocols=(Protocol.STRICT, Protocol.DOMAIN),
-        in_short="Shows the most similar training utterances to a language model on a server of yours.",
-        needs=Needs.SERVER,
-        may_know_corpora=True,
+        expected=Expectation(time="minutes on 2 cores", memory="2 GB"),
     ),
 }
+
+
+def _registered() -> dict[str, RegistryEntry]:
+    """Return the parsers that installed packages register. Those of a package that cannot be read are left out, and
+    the log says so: all others go on."""
+    added: dict[str, RegistryEntry] = {}
+    for point in sorted(entry_points(group=GROUP), key=lambda each: (_package_of(each), each.name)):
+        try:
+            entries = dict(point.load())
+            for name, each in entries.items():
+                _check(name, each, {**SHIPPED, **added})
+        except Exception as error:  # whatever the code of others raises
+            logger.warning(
+                "The parsers that the package %s registers as %s cannot be used: %s. All others go on.",
+                _package_of(point),
+                point.value,
+                error,
+            )
+        else:
+            added |= entries
+    return added
+
+
+def _package_of(point: EntryPoint) -> str:
+    return point.dist.name if point.dist else ""
+
+
+def _check(name: str, entry: RegistryEntry, taken: Mapping[str, RegistryEntry]) -> None:
+    """Raise what is wrong with an entry, before a page finds it."""
+    if name in taken:
+        raise TypeError(f"there is a parser {name!r} already")
+    if entry.queue not in QUEUES:
+        raise TypeError(
+            f"{name} has the queue {entry.queue!r}, which is none of {', '.join(QUEUES)}"
+        )
+    describe(_attribute(entry.config))
+
+
+def _in_order(added: Mapping[str, RegistryEntry]) -> dict[str, RegistryEntry]:
+    ordered: dict[str, RegistryEntry] = {}
+    for name, each in SHIPPED.items():
+        behind = {other: one for other, one in added.items() if one.after == name}
+        ordered |= {name: each, **behind}
+    return {**ordered, **added}
+
+
+def _attribute(dotted: str) -> Any:
+    module, _, name = dotted.rpartition(".")
+    return getattr(import_module(module), name)
+
+
+PARSERS = _in_order(_registered())
 
 
 def entry(name: str) -> RegistryEntry:
@@ -266,8 +281,3 @@ def make_config(name: str, values: Mapping[str, Any] | None = None) -> Any:
 def config_values(config: Any) -> dict[str, Any]:
     """Return a config as JSON with every field: what is stored with the run and hashed."""
     return asdict(config)
-
-
-def _attribute(dotted: str) -> Any:
-    module, _, name = dotted.rpartition(".")
-    return getattr(import_module(module), name)

@@ -6,58 +6,10 @@ from django.db.models import Count
 
 from annotations.language.corpus import Criterion
 from annotations.models import Example, Split
+from parser_service.parsers.registry import PARSERS
 
 # Parser → for each setting the accuracy by command and by logical form.
-PUBLISHED: dict[str, dict[tuple[str, str], tuple[float, float]]] = {
-    "grammar-oracle": {
-        ("gen", "gen"): (100.0, 100.0),
-        ("gen", "para"): (1.1, 0.9),
-        ("para", "para"): (1.1, 0.9),
-        ("gen+para", "para"): (1.1, 0.9),
-    },
-    "knn": {
-        ("gen", "gen"): (63.0, 0.0),
-        ("gen", "para"): (42.0, 0.0),
-        ("para", "para"): (42.8, 0.0),
-        ("gen+para", "para"): (49.8, 0.0),
-    },
-    "seq2seq": {
-        ("gen", "gen"): (95.9, 0.0),
-        ("gen", "para"): (13.0, 0.0),
-        ("para", "para"): (64.4, 0.0),
-        ("gen+para", "para"): (79.6, 0.0),
-    },
-    "seq2seq-glove": {
-        ("gen", "gen"): (98.8, 26.3),
-        ("gen", "para"): (12.4, 0.0),
-        ("para", "para"): (70.2, 0.0),
-        ("gen+para", "para"): (85.3, 6.3),
-    },
-    "seq2seq-glove-elmo": {
-        ("gen", "gen"): (98.8, 36.2),
-        ("gen", "para"): (21.3, 0.0),
-        ("para", "para"): (77.3, 22.1),
-        ("gen+para", "para"): (85.4, 34.4),
-    },
-    "seq2seq-glove-gpt": {
-        ("gen", "gen"): (97.9, 24.6),
-        ("gen", "para"): (27.6, 1.8),
-        ("para", "para"): (78.2, 26.3),
-        ("gen+para", "para"): (89.0, 37.9),
-    },
-    "seq2seq-glove-bert-base": {
-        ("gen", "gen"): (96.3, 56.9),
-        ("gen", "para"): (12.2, 3.3),
-        ("para", "para"): (75.4, 31.3),
-        ("gen+para", "para"): (87.6, 37.6),
-    },
-    "seq2seq-glove-bert-large": {
-        ("gen", "gen"): (97.9, 54.7),
-        ("gen", "para"): (27.1, 9.6),
-        ("para", "para"): (78.5, 30.4),
-        ("gen+para", "para"): (89.4, 37.6),
-    },
-}
+PUBLISHED = {name: entry.published for name, entry in PARSERS.items() if entry.published}
 # Which of a pair of figures belongs to a criterion.
 INDEX = {Criterion.COMMAND: 0, Criterion.LOGICAL_FORM: 1}
 # Training and validation pairs of the published corpus (docs/reference/formats.md, Pairs): how a

@@ -14,7 +14,7 @@ from annotations.rows.from_rows import ready_templates
 from parser_service.models import Answering, AnsweringOrder, TrainingRun
 from parser_service.models.answering import MOST_ALLOWED_WRONG, answering_of
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.registry import ORACLE, title_of
+from parser_service.parsers.registry import ORACLE, Needs, needing, title_of
 from parser_service.parsers.server_address import problem_of, server
 from parser_service.runs.promoting import last_part, last_runs, learned_part
 from parser_service.serving.calibrating import Calibrated, calibrated
@@ -70,8 +70,9 @@ def why_no_last_part(world: World) -> str:
         return problem
     if last_runs().filter(world=world).exists():
         return ""
+    titles = " or ".join(map(title_of, needing(Needs.SERVER)))
     return (
-        f"No language model was tried in {world.name} yet. Start a run of {title_of('llm')} under the protocol "
+        f"No language model was tried in {world.name} yet. Start a run of {titles} under the protocol "
         f"{Protocol.DOMAIN}: it says which model, and checks that it answers."
     )
 

@@ -16,7 +16,6 @@ from parser_service.neural.device import threads
 from parser_service.neural.seq2seq.seq2seq_parser import Seq2Seq
 from parser_service.neural.seq2seq.vocabulary import Vocabulary
 from parser_service.neural.word_vectors.contextual import ContextualEncoder, TransformerWords
-from parser_service.neural.word_vectors.elmo import Elmo
 from parser_service.neural.word_vectors.glove import read_glove
 from parser_service.neural.word_vectors.scalar_mix import ContextShape
 from parser_service.neural.word_vectors.vector_cache import VectorCache
@@ -24,8 +23,6 @@ from parser_service.parsers.hyperparameters.vectors import (
     GloveBertBaseConfig,
     GloveBertLargeConfig,
     GloveConfig,
-    GloveElmoConfig,
-    GloveGptConfig,
     MiniLmConfig,
 )
 from parser_service.parsers.interface import Observer, Pair
@@ -137,26 +134,6 @@ class Seq2SeqGlove(WithGlove):
     name = "seq2seq-glove"
     version = 1
     Config = GloveConfig
-
-
-class Seq2SeqGloveElmo(WithContext, WithGlove):
-    """GloVe beside a learned mix of ELMo's three layers."""
-
-    name = "seq2seq-glove-elmo"
-    version = 1
-    Config = GloveElmoConfig
-    config: GloveElmoConfig
-
-    def _find_encoder(self) -> ContextualEncoder:
-        return Elmo.named(self.config.elmo, encoders_folder())
-
-
-class Seq2SeqGloveGpt(WithContext, WithGlove):
-    """GloVe beside OpenAI's GPT."""
-
-    name = "seq2seq-glove-gpt"
-    version = 1
-    Config = GloveGptConfig
 
 
 class Seq2SeqGloveBertBase(WithContext, WithGlove):

@@ -16,6 +16,7 @@ from torch import Tensor
 from torch.nn.functional import cross_entropy
 
 from parser_service.neural.device import denormals_flushed, has_bf16
+from parser_service.neural.t5.config import EncoderDecoderConfig
 from parser_service.neural.t5.network import EncoderDecoder, SourceTokens
 from parser_service.neural.training import (
     TENSORS,
@@ -26,7 +27,6 @@ from parser_service.neural.training import (
     random_state_kept,
 )
 from parser_service.neural.weights import WEIGHTS, load_tensors
-from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import Check
 from parser_service.parsers.storage import read_json, write_json
 

@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
 from annotations.language.texts import MAX_INDEXED_BYTES, Refusal
-from parser_service.neural.pretrained import PretrainedWriter
+from parser_service.neural.t5.published_weights import PretrainedWriter
 from parser_service.neural.t5.spelling import words_of
 from parser_service.neural.weights import WEIGHTS, load_tensors
 from parser_service.parsers.storage import read_json, write_json

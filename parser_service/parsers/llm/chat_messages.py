@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from annotations.language.forms import Form, actions_of, canonical_text, read_or_none
 from annotations.language.world import Predicate, gloss, print_signatures
-from parser_service.parsers.llm.protocol import Message
+from parser_service.parsers.model_server.protocol import Message
 from parser_service.parsers.written_forms import written_actions
 
 UNKNOWN = "UNKNOWN"

@@ -23,7 +23,6 @@ from parser_service.parsers.interface import (
     Pair,
     keep_going,
 )
-from parser_service.parsers.llm.asker import Asker
 from parser_service.parsers.llm.chat_messages import (
     UNKNOWN,
     Choices,
@@ -35,7 +34,8 @@ from parser_service.parsers.llm.chat_messages import (
 )
 from parser_service.parsers.llm.config import LISTED, LanguageModelConfig
 from parser_service.parsers.llm.mending import Mended, Mender, tokens_in, without_loose
-from parser_service.parsers.llm.protocol import MOST_NAME, Question
+from parser_service.parsers.model_server.asker import Asker
+from parser_service.parsers.model_server.protocol import MOST_NAME, Question
 from parser_service.parsers.nearest_pairs import PairKeeper, WordOverlap
 from parser_service.parsers.server_address import problem_of, server
 from parser_service.parsers.written_forms import canonical, in_order, written_actions

@@ -10,7 +10,7 @@ from django.core.exceptions import ValidationError
 from annotations.campaigns.model_rewrites import ModelSettings
 from annotations.language.corpus import INSTRUCTIONS, LONGEST_INSTRUCTIONS, check_instructions
 from annotations.language.texts import Refusal
-from parser_service.parsers.llm.protocol import MOST_NAME
+from parser_service.parsers.model_server.protocol import MOST_NAME
 
 MOST_WORDINGS = 10
 MOST_REQUESTS = 20_000

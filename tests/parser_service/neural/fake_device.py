@@ -18,8 +18,8 @@ CALLERS = (
     "ranker.fitting",
     "t5.t5_parser",
     "word_vectors.contextual",
-    "word_vectors.elmo",
-    "word_vectors.elmo_files",
+    "elmo.encoder",
+    "elmo.files",
 )  # the modules that call processor()
 ATEN = torch.ops.aten
 PACK = ATEN._pack_padded_sequence.default

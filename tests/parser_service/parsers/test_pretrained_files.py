@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import pytest
 
 from annotations.language.texts.errors import Refusal
+from parser_service.neural.elmo.config import ElmoFiles, find_elmo
 from parser_service.parsers import pretrained_files
+from parser_service.parsers.hyperparameters.fields import hyperparameter
 from parser_service.parsers.pretrained_files import (
-    ElmoFiles,
-    find_elmo,
+    find_encoder,
     find_glove,
     missing_weights,
     refuse_missing_weights,
@@ -18,9 +19,9 @@ from parser_service.parsers.registry import make_config
 
 @dataclass
 class Names:
-    glove: str = ""
-    elmo: str = ""
-    encoder: str = ""
+    glove: str = hyperparameter("", "", finds=find_glove)
+    elmo: str = hyperparameter("", "", finds=find_elmo)
+    encoder: str = hyperparameter("", "", finds=find_encoder)
 
 
 @pytest.fixture
@@ -49,7 +50,7 @@ def test_what_is_there_is_found(encoders):
 def test_nothing_is_missing_where_all_is_there(encoders):
     assert missing_weights(Names("vectors.txt", "elmo", "makers/bert"), encoders) is None
     assert missing_weights(Names(), encoders) is None
-    assert missing_weights(object(), encoders) is None
+    assert missing_weights(make_config("linear"), encoders) is None
 
 
 def test_a_missing_file_says_what_to_put_where(encoders):

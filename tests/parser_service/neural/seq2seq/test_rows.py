@@ -6,7 +6,8 @@ import pytest
 import torch
 
 from annotations.language.texts.errors import Refusal
-from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqGloveElmo, Seq2SeqMiniLm
+from parser_service.neural.elmo.row import Seq2SeqGloveElmo
+from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqMiniLm
 from parser_service.neural.word_vectors.vector_cache import VectorCache
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.interface import Cancelled, Pair

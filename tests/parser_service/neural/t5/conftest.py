@@ -6,9 +6,9 @@ import pytest
 
 from annotations.language.forms import read_form
 from annotations.language.world import infer_signatures
+from parser_service.neural.t5.config import EncoderDecoderConfig
 from parser_service.neural.t5.t5_parser import T5
 from parser_service.parsers import pretrained_files
-from parser_service.parsers.hyperparameters.t5 import EncoderDecoderConfig
 from tests.parser_service.neural.conftest import toy_pairs
 from tests.parser_service.neural.tiny_encoder_decoder import write_bart, write_t5
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from parser_service.parsers.llm.asker import Asker
-from parser_service.parsers.llm.protocol import Question
+from parser_service.parsers.model_server.asker import Asker
+from parser_service.parsers.model_server.protocol import Question
 from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import MODEL
 

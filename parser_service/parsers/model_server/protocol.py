@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply
+from parser_service.parsers.model_server.exchange import NoAnswer, NoReply, Reply
 
 Message = dict[str, str]
 

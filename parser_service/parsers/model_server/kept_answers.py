@@ -14,7 +14,7 @@ from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
 
-from parser_service.parsers.llm.protocol import ModelAnswer, Question
+from parser_service.parsers.model_server.protocol import ModelAnswer, Question
 
 FORMAT = 1  # raised whenever the same question is put in other words
 FOLDERS = 256

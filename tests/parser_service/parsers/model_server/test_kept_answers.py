@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from parser_service.parsers.llm.kept_answers import FOLDERS, KeptAnswers
-from parser_service.parsers.llm.protocol import ModelAnswer, Question
+from parser_service.parsers.model_server.kept_answers import FOLDERS, KeptAnswers
+from parser_service.parsers.model_server.protocol import ModelAnswer, Question
 
 QUESTION = Question("tiny", ({"role": "user", "content": "hello"},), {"enum": ["a"]}, 0, 100)
 ANSWER = ModelAnswer('{"form": "ä"}', "tiny-2026")
@@ -73,7 +73,7 @@ def test_a_disk_that_cannot_be_written_keeps_nothing_and_fails_nobody(tmp_path):
 def test_two_processes_keep_and_make_room_in_one_folder(tmp_path):
     code = (
         "import sys; from pathlib import Path; from dataclasses import replace\n"
-        "from tests.parser_service.parsers.llm.test_kept_answers import *\n"
+        "from tests.parser_service.parsers.model_server.test_kept_answers import *\n"
         "answers = KeptAnswers(Path(sys.argv[1]), most=FOLDERS)\n"
         "for seed in range(400):\n"
         "    question = replace(QUESTION, seed=seed)\n"

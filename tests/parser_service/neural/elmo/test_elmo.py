@@ -6,9 +6,9 @@ import pytest
 import torch
 
 from annotations.language.texts.errors import Refusal
-from parser_service.neural.word_vectors.elmo import Elmo
-from parser_service.neural.word_vectors.elmo_files import read_elmo_options
-from parser_service.neural.word_vectors.elmo_layers import spell
+from parser_service.neural.elmo.encoder import Elmo
+from parser_service.neural.elmo.files import read_elmo_options
+from parser_service.neural.elmo.layers import spell
 from parser_service.neural.word_vectors.scalar_mix import ContextShape, ScalarMix
 from tests.parser_service.neural.tiny_weights import ELMO, write_elmo
 

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from annotations.language.texts import Refusal
 from parser_service.neural.device import processor
-from parser_service.neural.word_vectors.elmo_layers import (
+from parser_service.neural.elmo.layers import (
     CHARACTERS,
     Affine,
     CharacterCnn,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Generic, TypeVar
 
 from parser_service.parsers.interface import Check
-from parser_service.parsers.llm.exchange import Abandoned, Exchange, Reply
+from parser_service.parsers.model_server.exchange import Abandoned, Exchange, Reply
 from parser_service.parsers.server_address import ModelServer
 
 LOOK_EVERY = 0.1  # seconds between two looks at whether to stop

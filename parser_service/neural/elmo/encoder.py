@@ -10,15 +10,15 @@ import torch
 from torch import Tensor
 
 from parser_service.neural.device import full_fp32, processor
-from parser_service.neural.word_vectors.elmo_files import (
+from parser_service.neural.elmo.config import find_elmo
+from parser_service.neural.elmo.files import (
     BACKWARD,
     FORWARD,
     ElmoOptions,
     open_weights,
     read_elmo_options,
 )
-from parser_service.neural.word_vectors.elmo_layers import ProjectedLstm, spell
-from parser_service.parsers.pretrained_files import find_elmo
+from parser_service.neural.elmo.layers import ProjectedLstm, spell
 from parser_service.parsers.storage import file_hash
 
 

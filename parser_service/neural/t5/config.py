@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty, validate
+from parser_service.parsers.pretrained_files import find_encoder
 
 
 @dataclass(frozen=True)
@@ -14,6 +15,7 @@ class EncoderDecoderConfig:
     encoder: str = hyperparameter(
         "google/flan-t5-small",
         "Pretrained encoder–decoder (T5, FLAN-T5, BART): its name in GPSR_ENCODERS_DIR, or a package.",
+        finds=find_encoder,
     )
     decoding: str = hyperparameter(
         "typed",

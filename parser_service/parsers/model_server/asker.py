@@ -13,10 +13,10 @@ from http import HTTPStatus
 from typing import Any, TypeVar
 
 from parser_service.parsers.interface import Check
-from parser_service.parsers.llm.crew import Crew
-from parser_service.parsers.llm.exchange import NoAnswer, NoReply, Reply, ServerRefusal
-from parser_service.parsers.llm.kept_answers import KeptAnswers, hash_of
-from parser_service.parsers.llm.protocol import (
+from parser_service.parsers.model_server.crew import Crew
+from parser_service.parsers.model_server.exchange import NoAnswer, NoReply, Reply, ServerRefusal
+from parser_service.parsers.model_server.kept_answers import KeptAnswers, hash_of
+from parser_service.parsers.model_server.protocol import (
     CHAT,
     MODELS,
     SCHEMA_FIELD,

@@ -12,9 +12,9 @@ import pytest
 
 from annotations.language.texts.errors import Refusal
 from parser_service.parsers.interface import Cancelled
-from parser_service.parsers.llm.asker import Asker
-from parser_service.parsers.llm.exchange import NoAnswer, ServerRefusal
-from parser_service.parsers.llm.protocol import ModelAnswer
+from parser_service.parsers.model_server.asker import Asker
+from parser_service.parsers.model_server.exchange import NoAnswer, ServerRefusal
+from parser_service.parsers.model_server.protocol import ModelAnswer
 from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import (
     QUICK,
@@ -25,7 +25,7 @@ from tests.parser_service.llm_server import (
     says,
     sends,
 )
-from tests.parser_service.parsers.llm.questions import ask, question
+from tests.parser_service.parsers.model_server.questions import ask, question
 
 # Seconds that no test waits, however slow the machine; what waits for them has failed.
 LONG = 30

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from annotations.language.texts.errors import Refusal
-from parser_service.parsers.llm.asker import Asker
+from parser_service.parsers.model_server.asker import Asker
 from tests.parser_service.llm_server import fails, says
-from tests.parser_service.parsers.llm.questions import ask, question
+from tests.parser_service.parsers.model_server.questions import ask, question
 
 
 @pytest.mark.parametrize("status", [400, 500])  # llama-cpp-python answers with the latter

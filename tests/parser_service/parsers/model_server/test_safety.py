@@ -13,11 +13,11 @@ from shutil import which
 import pytest
 
 from annotations.language.texts.errors import Refusal
-from parser_service.parsers.llm import exchange
-from parser_service.parsers.llm.asker import Asker
+from parser_service.parsers.model_server import exchange
+from parser_service.parsers.model_server.asker import Asker
 from parser_service.parsers.server_address import ModelServer
 from tests.parser_service.llm_server import KEY, QUICK, fails, says, sends, tiny_server
-from tests.parser_service.parsers.llm.questions import ask, question
+from tests.parser_service.parsers.model_server.questions import ask, question
 
 
 @pytest.mark.parametrize("status", [301, 302, 307, 308])
