@@ -222,10 +222,6 @@ class _Filled:
     cost: int
     path: Path = field(default=(), compare=False)
 
-    @property
-    def is_plain(self) -> bool:
-        return self.aligned is self.anonymized
-
 
 # What a nonterminal became: a form, or the leaves that stand for its words. The number of a wildcard is its arc's.
 Value: TypeAlias = "_Filled | Leaves"
@@ -442,12 +438,18 @@ def _words(value: Value) -> Precedence:
     return tuple(leaf.value if isinstance(leaf, Text) else leaf.token for leaf in value)
 
 
+def _is_plain(value: Value) -> bool:
+    """Return whether no arc with a number is in a value."""
+    if isinstance(value, _Filled):
+        return value.aligned is value.anonymized
+    return not any(isinstance(leaf, Wildcard) and leaf.id is not None for leaf in value)
+
+
 def _fill(rule: _Rule, reading: _Reading) -> _Filled | None:
     """Return the form of a template for a reading; None where the words for a predicate are no name."""
     values = dict(reading.bound)
     form = rule.template.form
-    filled = [value for value in values.values() if isinstance(value, _Filled)]
-    is_plain = not reading.slots and not reading.inner and all(each.is_plain for each in filled)
+    is_plain = not (reading.slots or reading.inner) and all(map(_is_plain, values.values()))
     try:
         anonymized = aligned = fill_anonymized(
             form,
@@ -505,7 +507,7 @@ def _without_number(slots: Iterable[tuple[Wildcard, int]]) -> dict[str, list[int
 
 def _arcs_of(form: _Filled) -> tuple[int | None, ...]:
     """Return the arc of each class token of the form, in order; nothing where none has one."""
-    if form.is_plain:
+    if _is_plain(form):
         return ()
     pairs = zip(walk(form.anonymized), walk(form.aligned), strict=True)
     arcs = tuple(
