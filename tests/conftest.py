@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import hypothesis
@@ -25,7 +26,7 @@ from annotations.models.worlds import Role
 from tests.replaying import made_once
 from tests.sample_world import SampleWorld, fill_world
 from tests.waiting import PATIENCE_SECONDS
-from tests.write_transactions import measured_transactions
+from tests.write_transactions import Lasted, measured_transactions
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -41,11 +42,34 @@ hypothesis.settings.load_profile("steady")
 WAITING = {"processes", "browser"}
 
 
-def pytest_configure() -> None:
-    """Processes that tests start obey Ctrl-C also where these were started in the background of a
-    script, whose shell has it ignored."""
+LISTEN_EVERY = leasing.LISTEN_EVERY
+LASTED = pytest.StashKey[list[Lasted]]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Sets up what holds for all tests, since a fixture costs in each.
+
+    Processes that tests start obey Ctrl-C also where these were started in the background of a script, whose
+    shell has it ignored. Static files have no manifest, so that pages render unbuilt. A hasher costs nothing.
+    Downloads have no line, since a test's client seldom reads one to its end. Django would write rows about all
+    models again, permissions above all, whenever a test's database is emptied; nothing here reads them.
+    """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    post_migrate.disconnect(create_contenttypes)
+    post_migrate.disconnect(dispatch_uid="django.contrib.auth.management.create_permissions")
+    plain = {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"}
+    shares = "gpsr_site.web.thread_shares.ThreadShares"
+    stack = ExitStack()
+    config.add_cleanup(stack.close)
+    config.stash[LASTED] = stack.enter_context(measured_transactions())
+    stack.enter_context(
+        override_settings(
+            MIDDLEWARE=[each for each in site.MIDDLEWARE if each != shares],
+            STORAGES={**site.STORAGES, "staticfiles": plain},
+            PASSWORD_HASHERS=["django.contrib.auth.hashers.MD5PasswordHasher"],
+        )
+    )
 
 
 def pytest_collection_finish() -> None:
@@ -69,55 +93,31 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     items.sort(key=lambda item: (item.path not in waiting, item.path))
 
 
-@pytest.fixture(autouse=True, scope="session")
-def nothing_about_models() -> None:
-    """Django would write rows about all models again, permissions above all, whenever a test's database
-    is emptied; nothing here reads them."""
-    post_migrate.disconnect(create_contenttypes)
-    post_migrate.disconnect(dispatch_uid="django.contrib.auth.management.create_permissions")
-
-
-@pytest.fixture(autouse=True, scope="session")
-def quick_and_plain() -> Iterator[None]:
-    """Static files without a manifest, so that pages render unbuilt; a hasher that costs nothing; no line for
-    downloads, since a test's client seldom reads one to its end."""
-    plain = {"BACKEND": "django.contrib.staticfiles.storage.StaticFilesStorage"}
-    shares = "gpsr_site.web.thread_shares.ThreadShares"
-    with override_settings(
-        MIDDLEWARE=[each for each in site.MIDDLEWARE if each != shares],
-        STORAGES={**site.STORAGES, "staticfiles": plain},
-        PASSWORD_HASHERS=["django.contrib.auth.hashers.MD5PasswordHasher"],
-    ):
-        yield
-
-
-@pytest.fixture(autouse=True)
-def no_earlier_attempts(request):
-    """What is counted in the shared cache is rolled back with the test; but for committed data."""
-    if "transactional_db" in request.fixturenames:
-        request.getfixturevalue("transactional_db")
-        cache.clear()
-
-
-@pytest.fixture(autouse=True)
-def leases_look_at_what_is_committed(request, monkeypatch):
-    """The thread of a lease has its own connection, to which work inside a test's transaction looks lost."""
-    mark = request.node.get_closest_marker("django_db")
-    is_committed = "transactional_db" in request.fixturenames or (
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """The thread of a lease has its own connection, to which work inside a test's transaction looks lost: it
+    looks only at what is committed."""
+    mark = item.get_closest_marker("django_db")
+    is_committed = "transactional_db" in getattr(item, "fixturenames", ()) or (
         mark and mark.kwargs.get("transaction")
     )
-    if not is_committed:
-        monkeypatch.setattr(leasing, "LISTEN_EVERY", PATIENCE_SECONDS)
+    leasing.LISTEN_EVERY = LISTEN_EVERY if is_committed else PATIENCE_SECONDS
+    item.config.stash[LASTED].clear()
 
 
-@pytest.fixture(autouse=True)
-def nobody_waits_for_computing():
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
     """A write transaction that computes keeps all others from writing; it has to be short."""
-    with measured_transactions() as lasted:
-        yield
-    assert not [each for each in lasted if each.is_too_long], (
+    yield
+    assert not [each for each in item.config.stash[LASTED] if each.is_too_long], (
         "compute before the transaction, and only write in it"
     )
+
+
+@pytest.fixture
+def transactional_db(transactional_db):
+    """What is counted in the shared cache is rolled back with the test; but for committed data."""
+    cache.clear()
 
 
 @pytest.fixture(scope="session")

@@ -11,6 +11,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 
@@ -29,6 +30,8 @@ CALLS = {
     "_answer": (2, 0, 1),
     "TooManyCombinations": (0, None, None),
 }
+# What stands in every module that has such a call, or a class with a code: the others need not be parsed.
+SAYS_SO = re.compile(rf"\b(?:{'|'.join(CALLS)})\(|^ +(?:default_)?code\b", re.MULTILINE)
 OF_THE_FRAMEWORK = (
     *(exceptions.ParseError, exceptions.AuthenticationFailed, exceptions.NotAuthenticated),
     *(exceptions.PermissionDenied, exceptions.NotFound, exceptions.MethodNotAllowed),
@@ -85,9 +88,9 @@ class Code:
 class _Module:
     """A module of the code whose refusals are read."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, source: str) -> None:
         self._name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
-        self.tree = ast.parse(path.read_text(encoding="utf-8"))
+        self.tree = ast.parse(source)
 
     def functions(self) -> Iterator[ast.AST]:
         """Yield the functions, and the module for what stands outside of them."""
@@ -137,13 +140,15 @@ class _Module:
             return None
 
 
+@cache
 def read_codes() -> dict[str, Code]:
-    """Return what the code says of each of its codes."""
+    """Return what the code says of each of its codes. It takes seconds."""
     codes: defaultdict[str, Code] = defaultdict(Code)
     for app in ("annotations", "parser_service", "gpsr_site"):
         for path in sorted((ROOT / app).rglob("*.py")):
-            if not TERMINAL.search(path.as_posix()):
-                _read_module(_Module(path), codes)
+            source = path.read_text(encoding="utf-8")
+            if SAYS_SO.search(source) and not TERMINAL.search(path.as_posix()):
+                _read_module(_Module(path, source), codes)
     for each in OF_THE_FRAMEWORK:
         code = codes[each.default_code]
         said = str(each.default_detail).replace("{method}", "…").replace("{media_type}", "…")

@@ -7,15 +7,13 @@ from collections.abc import Sequence
 from copy import copy
 from http import HTTPStatus
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load_file, save_file
 from scipy.sparse import csr_matrix, hstack
 from scipy.special import expit
-from sklearn.feature_extraction.text import TfidfVectorizer
-from sklearn.linear_model import LogisticRegression
 
 from annotations.language.grounding import Anonymizer
 from annotations.language.texts import Refusal
@@ -35,6 +33,9 @@ from parser_service.parsers.interface import (
 )
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 from parser_service.parsers.words import words
+
+if TYPE_CHECKING:
+    from sklearn.feature_extraction.text import TfidfVectorizer
 
 VOCABULARY, WEIGHTS = "vocabulary.json", "model.safetensors"
 # The kinds of features: the analyzer of scikit-learn, and the shortest and longest n-gram.
@@ -184,6 +185,8 @@ class LinearClassifier(Parser):
 
     def _learn(self, values: csr_matrix, forms: Sequence[str], observe: Observer) -> None:
         """Learn the weights of each form. ``values`` are the features of the pairs [pairs, features]."""
+        from sklearn.linear_model import LogisticRegression  # slow to import
+
         number = {form: at for at, form in enumerate(self._forms)}
         form_of = np.array([number[form] for form in forms])  # [pairs]
         values = values.astype(np.float64)  # what liblinear reads
@@ -264,6 +267,8 @@ class Features(NamedTuple):
 
 
 def _vectorizer(kind: str, **options: Any) -> TfidfVectorizer:
+    from sklearn.feature_extraction.text import TfidfVectorizer  # slow to import
+
     analyzer, lengths = KINDS[kind]
     return TfidfVectorizer(
         analyzer=analyzer,

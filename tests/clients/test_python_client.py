@@ -8,7 +8,6 @@ import subprocess
 import sys
 import tomllib
 
-import pandas
 import pytest
 from command_desk import SORRY_AWAY, WILL, WILL_NOT, CommandDesk
 from pytest_django.live_server_helper import LiveServer
@@ -141,6 +140,8 @@ def test_a_split_is_exported_by_its_name(home, parse_server, world, tmp_path):
 
 
 def test_results_are_tables_that_pandas_reads(home, parse_server, world, tmp_path):
+    import pandas
+
     parquet = pandas.read_parquet(home.export_results(tmp_path / "all.parquet", "parquet"))
     table = pandas.read_csv(home.export_results(tmp_path / "all.csv"))
     assert list(table) == list(parquet)

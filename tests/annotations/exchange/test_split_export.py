@@ -4,7 +4,6 @@ import csv
 import io
 import json
 
-import pandas
 import pytest
 
 from annotations.exchange.pair_files import gather_pairs, read_pair_folder
@@ -43,6 +42,8 @@ def test_every_format_gives_every_example_in_one_query(split, django_assert_num_
 
 
 def test_pandas_reads_tables_as_they_are(split):
+    import pandas
+
     rows = list(split.examples.values(*FIELDS))
     files = {as_: io.BytesIO(b"".join(export_pieces(split, as_))) for as_ in ("parquet", "csv")}
     assert pandas.read_parquet(files["parquet"]).to_dict("records") == rows

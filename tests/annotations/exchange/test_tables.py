@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 import json
 
-import pandas
-import pyarrow.parquet as pq
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -41,6 +39,8 @@ def written(rows: list[tuple[object, ...]], as_: str) -> io.BytesIO:
 
 @given(rows=ROWS)
 def test_csv_is_read_by_pandas(rows):
+    import pandas
+
     frame = pandas.read_csv(written(rows, "csv"), dtype=str, keep_default_na=False)
     assert list(frame) == FIELDS
     assert frame.to_numpy().tolist() == [
@@ -50,6 +50,9 @@ def test_csv_is_read_by_pandas(rows):
 
 @given(rows=ROWS)
 def test_parquet_is_read_by_pandas(rows):
+    import pandas
+    import pyarrow.parquet as pq
+
     file = written(rows, "parquet")
     frame = pandas.read_parquet(file).astype(object)
     cells = frame.where(frame.notna(), None)

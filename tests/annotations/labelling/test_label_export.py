@@ -6,7 +6,6 @@ import csv
 import io
 import json
 
-import pandas
 import pytest
 
 from annotations.labelling.collecting import collect
@@ -61,6 +60,8 @@ def test_a_table_holds_no_formula(export):
 
 
 def test_parquet_holds_the_same(export):
+    import pandas
+
     table = pandas.read_parquet(io.BytesIO(export("as=parquet")))
     rows = [json.loads(line) for line in export("as=jsonl").splitlines()]
     assert list(table) == list(FIELDS)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from parser_service.analysis.attractors import (
     compare_dispersion,
@@ -34,6 +33,8 @@ GOLD = [form for _, form in EXAMPLES]
 
 
 def test_a_parser_that_always_answers_one_form_has_it_as_its_top_attractor():
+    from scipy import stats
+
     top, *others = find_attractors(TEXTS, GOLD, ["go"] * len(GOLD))
     assert not others
     assert top.is_attractor
@@ -71,6 +72,8 @@ def test_a_form_that_takes_in_one_kind_of_input_alone_is_frequent_but_no_attract
 
 
 def test_p_and_q_values_are_those_of_scipy():
+    from scipy import stats
+
     random = np.random.default_rng(3)
     answers = ["go" if random.random() < 0.6 else str(random.choice(["find", "say"])) for _ in GOLD]
     errors = [(gold, answer) for gold, answer in zip(GOLD, answers, strict=True) if gold != answer]

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from annotations.language.corpus import wilson_interval
 from parser_service.analysis.intervals import ratio_interval
@@ -19,6 +18,8 @@ shares = st.lists(
 
 
 def test_the_interval_of_a_mean_is_that_of_scipys_bootstrap():
+    from scipy import stats
+
     values = np.random.default_rng(1).beta(2, 5, size=400).round(3)
     expected = stats.bootstrap(
         (values,), np.mean, n_resamples=20_000, method="percentile", rng=np.random.default_rng(2)
@@ -52,6 +53,8 @@ def test_where_samples_cannot_differ_the_interval_is_wilsons(share, right):
 
 
 def test_very_many_distinct_values_have_the_interval_of_scipys_bootstrap_too():
+    from scipy import stats
+
     random = np.random.default_rng(4)
     weights = random.integers(1, 5, 3000).astype(float)
     values = random.beta(2, 5, 3000) * weights

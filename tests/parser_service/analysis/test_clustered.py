@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from annotations.language.corpus import wilson_interval
 from parser_service.analysis.clustered import Clustered, compare, figures_of, interval_of
@@ -29,6 +28,8 @@ def of(*rights: float, clusters: int = 40, size: int = 3, seed: int = 0) -> Clus
 
 
 def test_single_examples_have_the_interval_of_scipys_bootstrap():
+    from scipy import stats
+
     values = np.random.default_rng(1).integers(0, 2, 300).astype(float)
     expected = stats.bootstrap(
         (values,), np.mean, n_resamples=20_000, method="percentile", rng=np.random.default_rng(2)
@@ -38,6 +39,8 @@ def test_single_examples_have_the_interval_of_scipys_bootstrap():
 
 
 def test_unequal_clusters_have_the_interval_of_scipys_bootstrap_of_a_ratio():
+    from scipy import stats
+
     random = np.random.default_rng(3)
     count = random.integers(1, 9, 60)
     right = random.binomial(count, 0.7)

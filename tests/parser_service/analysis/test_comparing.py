@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from scipy import stats
 
 from parser_service.analysis.clustered import Clustered, compare
 from parser_service.analysis.comparing import (
@@ -48,6 +47,8 @@ def test_every_pair_is_compared_once_and_wins_less_losses_is_the_difference(corr
 
 @pytest.mark.parametrize(("wins", "losses"), [(0, 0), (1, 0), (7, 2), (12, 30), (400, 350)])
 def test_mcnemar_is_the_binomial_test_of_scipy(wins, losses):
+    from scipy import stats
+
     total = wins + losses
     expected = stats.binomtest(wins, total, 0.5).pvalue if total else 1.0
     assert mcnemar(wins, losses) == pytest.approx(expected)

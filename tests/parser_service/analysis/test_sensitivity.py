@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from annotations.language.corpus import wilson_interval
 from annotations.language.forms import FormDistances, equivalent, read_form
@@ -137,6 +136,8 @@ def test_a_perfect_parser_and_one_that_looks_at_nothing_are_reported_with_no_wor
 
 
 def test_p_and_q_values_are_those_of_scipy():
+    from scipy import stats
+
     rows = decided_by(lambda text: ("umbrella" in text, "bring" in text))
     total = sum(row.changes for row in rows)
     trials = sum(row.trials for row in rows)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import binom
 
 from parser_service.analysis.sureness import (
     DEFAULT_WEIGHTS,
@@ -222,6 +221,8 @@ def test_a_single_cluster_has_the_default():
 
 @given(judged, st.sampled_from([0.0, 0.02, 0.1, 0.5]))
 def test_of_what_is_acted_on_no_more_is_wrong_than_allowed(pairs, allowed):
+    from scipy.stats import binom
+
     given_ = np.array([each for each, _ in pairs])
     right = np.array([each for _, each in pairs], dtype=bool)
     point = operating_point(given_, right, allowed)

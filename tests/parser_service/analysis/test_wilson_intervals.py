@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from annotations.language.corpus import wilson_interval, wilson_intervals
 
@@ -26,6 +25,8 @@ def test_the_interval_is_wilsons(correct, count, low, high):
 
 @given(st.integers(1, 10_000).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
 def test_the_interval_is_that_of_scipy(pair):
+    from scipy import stats
+
     correct, count = pair
     expected = stats.binomtest(correct, count).proportion_ci(method="wilson")
     assert wilson_interval(correct, count) == pytest.approx((expected.low, expected.high))

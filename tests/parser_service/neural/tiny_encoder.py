@@ -4,13 +4,14 @@ from pathlib import Path
 
 import torch
 from tokenizers import Tokenizer, models, normalizers, pre_tokenizers, processors
-from transformers import BertConfig, BertModel, PreTrainedTokenizerFast
 
 SPECIAL = ("[PAD]", "[UNK]", "[CLS]", "[SEP]")
 
 
 def write_tiny_encoder(folder: Path, words: set[str], seed: int = 0) -> Path:
     """Random weights of a BERT of two layers, 32 wide, whose subwords are ``words``."""
+    from transformers import BertConfig, BertModel, PreTrainedTokenizerFast
+
     names = (*SPECIAL, *sorted({piece for word in words for piece in word.lower().split()}))
     vocabulary = {name: number for number, name in enumerate(names)}
     tokenizer = Tokenizer(models.WordLevel(vocabulary, unk_token="[UNK]"))

@@ -5,13 +5,6 @@ from pathlib import Path
 import torch
 from safetensors.torch import load_file, save_file
 from tokenizers import Tokenizer, decoders, models, pre_tokenizers, processors, trainers
-from transformers import (
-    BartConfig,
-    BartForConditionalGeneration,
-    PreTrainedTokenizerFast,
-    T5Config,
-    T5ForConditionalGeneration,
-)
 
 TEXT = [
     "bring me the apple from the kitchen",
@@ -24,6 +17,8 @@ WIDTH = 32
 def write_t5(folder: Path, seed: int = 0) -> Path:
     """Random weights of a FLAN-T5 of one layer each, which writes by other vectors than it reads, with a
     sentence-piece tokenizer that lacks ``<``."""
+    from transformers import T5Config, T5ForConditionalGeneration
+
     words = sorted({f"▁{word}" for text in TEXT for word in text.split()})
     pieces = ["<pad>", "</s>", "<unk>", "▁", *words, *"abcdefghijklmnopqrstuvwxyz>"]
     scores = [(piece, 0.0 if at < 3 else -float(at)) for at, piece in enumerate(pieces)]
@@ -56,6 +51,8 @@ def write_t5(folder: Path, seed: int = 0) -> Path:
 
 def write_bart(folder: Path, seed: int = 0) -> Path:
     """Random weights of a BART of one layer each, with byte pairs, that reads 40 of them."""
+    from transformers import BartConfig, BartForConditionalGeneration
+
     special = ["<s>", "<pad>", "</s>", "<unk>"]
     tokenizer = Tokenizer(models.BPE())
     tokenizer.pre_tokenizer = pre_tokenizers.ByteLevel()
@@ -85,6 +82,8 @@ def write_bart(folder: Path, seed: int = 0) -> Path:
 
 
 def _write(folder, model, config, tokenizer, seed):
+    from transformers import PreTrainedTokenizerFast
+
     folder.mkdir(parents=True, exist_ok=True)
     PreTrainedTokenizerFast(tokenizer_object=tokenizer).save_pretrained(folder)
     with torch.random.fork_rng(devices=[]):

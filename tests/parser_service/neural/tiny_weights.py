@@ -9,12 +9,6 @@ import numpy
 import torch
 from safetensors.torch import load_file, save_file
 from tokenizers import Tokenizer, models, normalizers, pre_tokenizers, processors, trainers
-from transformers import (
-    BertConfig,
-    BertForPreTraining,
-    OpenAIGPTConfig,
-    OpenAIGPTModel,
-)
 
 TEXT = ["bring me the apple from the kitchen", "find a person in the room", "object location"]
 ELMO = {
@@ -80,6 +74,8 @@ def elmo_shapes():
 
 def write_bert(folder: Path, seed: int = 0) -> Path:
     """A BERT with a WordPiece tokenizer that cuts words."""
+    from transformers import BertConfig, BertForPreTraining
+
     tokenizer = Tokenizer(models.WordPiece(unk_token="[UNK]"))
     tokenizer.normalizer = normalizers.BertNormalizer()
     tokenizer.pre_tokenizer = pre_tokenizers.BertPreTokenizer()
@@ -111,6 +107,8 @@ def _first_name(name: str) -> str:
 
 def write_gpt(folder: Path, seed: int = 0) -> Path:
     """OpenAI's first GPT with byte pairs that end words with a sign."""
+    from transformers import OpenAIGPTConfig, OpenAIGPTModel
+
     tokenizer = Tokenizer(models.BPE(unk_token="<unk>", end_of_word_suffix="</w>"))
     tokenizer.normalizer = normalizers.BertNormalizer()
     tokenizer.pre_tokenizer = pre_tokenizers.BertPreTokenizer()

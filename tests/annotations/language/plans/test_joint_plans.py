@@ -8,7 +8,6 @@ from itertools import groupby, pairwise, starmap
 
 import jsonschema
 import pytest
-import xmlschema
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -25,7 +24,6 @@ from annotations.language.plans import (
     TaskStep,
     TooManyCommands,
     WrongDistance,
-    behavior_tree_schema_text,
     default_book,
     join,
     joint_plan_schema,
@@ -37,10 +35,10 @@ from annotations.language.plans import (
 )
 from annotations.language.plans.situation import Place, Somewhere
 from tests.annotations.language.plans.task_plans import calls, codes, task_plan
+from tests.annotations.language.plans.xml_schema import xml_schema
 from tests.annotations.language.random_commands import commands
 
 JSON_SCHEMA = jsonschema.Draft202012Validator(joint_plan_schema())
-XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
 MOVING = (EffectKind.MOVES, EffectKind.ACCOMPANIES)
 
 TEA = '(λ$1:e (is_a $1 "tea") (at $1 "attic"))'
@@ -264,7 +262,7 @@ def test_the_order_inside_each_command_is_kept_and_nothing_is_lost(forms):
 def test_a_joint_plan_holds_one_thing_and_requires_earlier_steps(forms):
     joint = joined(*forms)
     JSON_SCHEMA.validate(joint.as_json())
-    XML_SCHEMA.validate(to_behavior_tree(joint.plan))
+    xml_schema().validate(to_behavior_tree(joint.plan))
     reported = {(each.code, each.step) for each in joint.plan.problems}
     held = None
     for number, step in enumerate(joint.plan.steps, start=1):

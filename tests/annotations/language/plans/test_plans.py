@@ -5,7 +5,6 @@ from typing import Any
 
 import jsonschema
 import pytest
-import xmlschema
 from defusedxml.ElementTree import fromstring
 from hypothesis import given
 
@@ -18,20 +17,19 @@ from annotations.language.plans import (
     Plan,
     Robust,
     Trouble,
-    behavior_tree_schema_text,
     make_plan,
     plan_schema,
     to_behavior_tree,
 )
 from annotations.language.world import Entity, Ontology
 from tests.annotations.language.ontology_files import read_ontology_folder
+from tests.annotations.language.plans.xml_schema import xml_schema
 from tests.annotations.language.published import SHARED, needs_corpus
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.sample_ontology import HOME
 
 STARTER = Path(__file__).parents[4] / "annotations" / "starter" / "household"
 JSON_SCHEMA = jsonschema.Draft202012Validator(plan_schema())
-XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
 
 
 def plan_of(text: str, **options: Any) -> Plan:
@@ -43,8 +41,8 @@ def plan_of(text: str, **options: Any) -> Plan:
 
 def require_valid(plan: Plan) -> None:
     JSON_SCHEMA.validate(plan.as_json())
-    XML_SCHEMA.validate(to_behavior_tree(plan))
-    XML_SCHEMA.validate(to_behavior_tree(plan, Robust()))
+    xml_schema().validate(to_behavior_tree(plan))
+    xml_schema().validate(to_behavior_tree(plan, Robust()))
 
 
 def troubles(plan: Plan) -> list[str]:
@@ -339,7 +337,7 @@ def test_it_is_a_port_with_the_noun_of_what_it_stands_for() -> None:
 def test_a_robust_tree_tries_each_step_again_and_hands_on_what_fails() -> None:
     plan = plan_of('(sequence (go "attic") (bring (λ$1:e (is_a $1 "tea"))) (say (count UNKNOWN)))')
     xml = to_behavior_tree(plan, Robust(4, 2.5, "Give Up"))
-    XML_SCHEMA.validate(xml)
+    xml_schema().validate(xml)
     tree = fromstring(xml)
     steps = tree.findall("BehaviorTree/Sequence/Fallback")
     assert len(steps) == len(plan.steps)

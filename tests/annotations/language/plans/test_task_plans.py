@@ -7,7 +7,6 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-import xmlschema
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,7 +22,6 @@ from annotations.language.plans import (
     RecipeTrouble,
     TaskPlan,
     apply_recipes,
-    behavior_tree_schema_text,
     default_book,
     join,
     make_plan,
@@ -47,13 +45,13 @@ from annotations.language.texts import ARGUMENT_NAMES
 from annotations.language.texts.decoding import read_folder
 from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.annotations.language.plans.task_plans import calls, codes, task_plan
+from tests.annotations.language.plans.xml_schema import xml_schema
 from tests.annotations.language.published import SHARED
 from tests.annotations.language.random_commands import commands
 from tests.annotations.language.random_forms import forms
 from tests.annotations.language.sample_ontology import HOME
 
 JSON_SCHEMA = jsonschema.Draft202012Validator(task_plan_schema())
-XML_SCHEMA = xmlschema.XMLSchema(behavior_tree_schema_text())
 STARTER = Path(__file__).parents[4] / "annotations" / "starter"
 WORLDS = {
     "household": STARTER / "household",
@@ -67,7 +65,7 @@ ADA = '(λ$1:e (person $1) (name $1 "Ada") (at $1 "stool"))'
 
 def require_valid(plan: TaskPlan) -> None:
     JSON_SCHEMA.validate(plan.as_json())
-    XML_SCHEMA.validate(to_behavior_tree(plan))
+    xml_schema().validate(to_behavior_tree(plan))
 
 
 @pytest.mark.parametrize(

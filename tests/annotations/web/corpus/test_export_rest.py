@@ -8,7 +8,6 @@ import json
 import zipfile
 from datetime import timedelta
 
-import pyarrow.parquet as pq
 import pytest
 from django.core.files.uploadedfile import SimpleUploadedFile
 from django.utils import timezone
@@ -60,6 +59,8 @@ def test_text_without_part_and_source_is_refused_with_a_sentence(caller, split, 
 
 
 def test_parquet_holds_the_rows_and_the_manifest(caller, split, annotator):
+    import pyarrow.parquet as pq
+
     response = caller(url_of(split, "?as=parquet"), annotator, accept="text/html")
     table = pq.read_table(io.BytesIO(b"".join(response.streaming_content)))
     rows = table.to_pylist()

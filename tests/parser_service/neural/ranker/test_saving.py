@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 import torch
-from transformers import BertConfig, BertModel
 
 from annotations.language.texts.errors import Refusal
 from parser_service.neural.ranker.form_ranker import FORMS, SAVED, FormRanker
@@ -119,6 +118,8 @@ def test_nothing_is_pickled(config, pairs, tmp_path):
 
 def test_saved_with_the_network_of_transformers_it_is_the_same_files(learned, tmp_path):
     """Rankers were trained and saved with that network until this project had its own."""
+    from transformers import BertConfig, BertModel
+
     learned.save(tmp_path / "now")
     encoder = learned._model.encoder
     network = BertModel(BertConfig(**encoder.description))

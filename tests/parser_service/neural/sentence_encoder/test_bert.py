@@ -6,7 +6,6 @@ from random import Random
 
 import pytest
 import torch
-from transformers import BertConfig, BertModel, DistilBertConfig, DistilBertModel
 
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.sentence_encoder.bert import Bert, is_bert, share_dropout
@@ -24,6 +23,8 @@ PRECISIONS = [nullcontext(), torch.autocast("cpu", torch.bfloat16)]
 
 
 def theirs(**shape):
+    from transformers import BertConfig, BertModel
+
     config = BertConfig(
         **{
             "vocab_size": 60,
@@ -147,6 +148,8 @@ def test_another_activation_is_computed_by_transformers():
 
 
 def test_another_architecture_is_described_and_made_again():
+    from transformers import DistilBertConfig, DistilBertModel
+
     config = DistilBertConfig(vocab_size=60, dim=32, n_layers=2, n_heads=2, hidden_dim=64)
     model = make_trainable(DistilBertModel(config)).eval()
     again = make_empty(json.loads(json.dumps(describe(model)))).eval()

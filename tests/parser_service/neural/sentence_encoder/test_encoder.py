@@ -3,7 +3,6 @@ import shutil
 import pytest
 import torch
 from tokenizers.processors import TemplateProcessing
-from transformers import MPNetConfig, MPNetModel
 
 from annotations.language.texts.errors import Refusal
 from parser_service.neural.pretrained import load_encoder
@@ -87,6 +86,8 @@ def test_an_encoder_needs_a_layer_that_is_trained(folder):
 
 
 def test_another_transformer_encodes_and_is_loaded_like_one_of_bert(folder, tmp_path):
+    from transformers import MPNetConfig, MPNetModel
+
     config = MPNetConfig(
         vocab_size=len(load_encoder(str(folder)).tokenizer),
         hidden_size=32,

@@ -2,7 +2,6 @@ import json
 
 import pytest
 import torch
-from transformers import AutoModel, AutoTokenizer
 
 from annotations.language.texts.errors import Refusal
 from parser_service.neural.word_vectors.contextual import TransformerWords, mean_by_word
@@ -14,6 +13,8 @@ WRITERS = [write_bert, write_gpt]
 
 def directly(folder, sentence):
     """What transformers says of each word, from its own tokenizer, model and word numbers."""
+    from transformers import AutoModel, AutoTokenizer
+
     tokenizer, model = AutoTokenizer.from_pretrained(folder), AutoModel.from_pretrained(folder)
     cut = tokenizer([list(sentence)], is_split_into_words=True, return_tensors="pt")
     with torch.no_grad():
@@ -36,6 +37,8 @@ def test_vectors_agree_with_transformers_called_directly(tmp_path, write):
 
 @pytest.mark.parametrize("write", WRITERS)
 def test_the_tokenizers_of_these_tests_do_cut_words(tmp_path, write):
+    from transformers import AutoTokenizer
+
     tokenizer = AutoTokenizer.from_pretrained(write(tmp_path / "encoder"))
     assert len(tokenizer.tokenize("kitchenette")) > 1
 
@@ -61,6 +64,8 @@ def test_an_utterance_without_words_has_no_vectors(tmp_path):
 
 
 def test_weights_in_half_precision_are_read_in_single(tmp_path):
+    from transformers import AutoModel
+
     folder = write_bert(tmp_path / "encoder")
     AutoModel.from_pretrained(folder).half().save_pretrained(folder)
     assert TransformerWords.named(str(folder)).vectors(("the",)).dtype == torch.float32

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import jsonschema
-import xmlschema
 
-from annotations.language.plans import Offer, behavior_tree_schema_text, plan_schema
+from annotations.language.plans import Offer, plan_schema
 from annotations.models import ApiToken, Entity
 from parser_service.serving.entity_offers import offer
+from tests.annotations.language.plans.xml_schema import xml_schema
 from tests.parser_service.served import make_home
 
 WORLD = "/api/v1/worlds/home/"
@@ -21,7 +21,7 @@ def test_a_form_becomes_a_plan_as_json_and_as_a_behaviour_tree(world, call, revi
     assert plan["is_executable"] and plan["steps"][0]["action"] == "bring"
     tree = call(reviewer, f"{WORLD}plan/", {"form": FORM, "as": "xml"}, scope="read")
     assert tree["Content-Type"] == "application/xml"
-    xmlschema.XMLSchema(behavior_tree_schema_text()).validate(tree.content.decode())
+    xml_schema().validate(tree.content.decode())
     bad = call(reviewer, f"{WORLD}plan/", {"form": "( bring"}, scope="read")
     assert bad.status_code == 400 and bad.json()["problems"][0]["field"] == "form"
 

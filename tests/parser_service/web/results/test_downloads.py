@@ -9,7 +9,6 @@ import subprocess
 from shutil import which
 from statistics import mean, stdev
 
-import pandas
 import pytest
 from django.urls import reverse
 
@@ -103,6 +102,8 @@ def test_a_figure_that_is_not_known_is_a_line_without_numbers(sample, anna):
     ["/w/home/results.{}?measure=all", "/api/v1/worlds/home/results/?measure=all&format={}"],
 )
 def test_pandas_reads_tables_as_they_are(address, sample, anna):
+    import pandas
+
     seeds(sample, 2, 6)
     sample.run.evaluations.update(same_plan=None)
     figures = anna.get(address.format("json")).json()["figures"]
