@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from django.contrib import messages
-from django.http import HttpResponse, JsonResponse
+from django.http import Http404, HttpResponse, JsonResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.views.decorators.cache import never_cache
 
@@ -49,6 +49,8 @@ def learning_curves_page(request: WorldRequest, world: World) -> HttpResponse:
 def learning_curves_table(request: WorldRequest, world: World) -> HttpResponse:
     """Show the table alone; the page refreshes itself with it."""
     context = context_of(request, world)
+    if context["shown"] is None:
+        raise Http404("Nothing is trained in this world.")
     return render(request, "parser_service/runs/_learning_curves_table.html", context)
 
 
