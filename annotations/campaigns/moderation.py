@@ -72,7 +72,7 @@ def reject(submissions: Sequence[Submission], by: User) -> int:
     return len(rows)
 
 
-def take_back(submission: Submission, by: User) -> Submission:
+def take_back_moderation(submission: Submission, by: User) -> Submission:
     """Undo a decision: the submission waits again, and what was made of it goes.
 
     Raises:

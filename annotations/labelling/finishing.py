@@ -85,7 +85,7 @@ def give_back(assignment: Assignment) -> None:
     _free(assignment, Outcome.RETURNED)
 
 
-def take_back(assignment: Assignment) -> None:
+def take_back_assignment(assignment: Assignment) -> None:
     """Reopen a finished assignment, whose label its person takes back; they hold the item again.
 
     Raises NoLongerYours, a sentence, where others have built on the answer already.

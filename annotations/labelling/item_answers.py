@@ -9,7 +9,7 @@ from django.db import transaction
 from django.db.models import Q
 
 from annotations.labelling import label_answers
-from annotations.labelling.finishing import finish, skip, take_back
+from annotations.labelling.finishing import finish, skip, take_back_assignment
 from annotations.labelling.giving import NotForThem, take
 from annotations.models import Assignment, Label, User, Utterance, Verdict, WorkItem, WorkKind
 from annotations.models.queueing import Outcome
@@ -127,12 +127,12 @@ def take_answer_back(label: Label, by: User) -> Utterance:
     Raises Refusal where the answer is somebody else's, and NoLongerYours where others have built on it.
     """
     with transaction.atomic():
-        utterance = label_answers.take_back(label, by)
+        utterance = label_answers.take_back_label(label, by)
         theirs = Assignment.objects.filter(person=label.annotator, item__utterance=label.utterance)
         # A skipped assignment has no label of its own.
         ended = theirs.filter(label=label)
         if label.verdict == Verdict.SKIP:
             ended = theirs.skipped().order_by("-pk")
         if assignment := ended.first():
-            take_back(assignment)
+            take_back_assignment(assignment)
         return utterance

@@ -153,7 +153,7 @@ def hold_utterance(utterance: Utterance, version: int | None, by: User) -> Utter
     return stored
 
 
-def take_back(row: Label, by: User) -> Utterance:
+def take_back_label(row: Label, by: User) -> Utterance:
     """Undo an answer of ``by``. Returns the utterance as it was before it.
 
     Raises Refusal where it is somebody else's or was taken back already.

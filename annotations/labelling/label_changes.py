@@ -52,7 +52,7 @@ def change_back(finding: AuditFinding, made: AuditDecision, by: User) -> None:
     Raises Refusal where the pair has changed since, or what it was is not known here.
     """
     if made.label is not None:
-        label_answers.take_back(made.label, by)
+        label_answers.take_back_label(made.label, by)
         return
     row = finding.paraphrase
     if row is None or row.version != made.version:

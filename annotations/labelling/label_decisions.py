@@ -84,7 +84,7 @@ def decide(
     return made
 
 
-def take_back(made: AuditDecision, by: User) -> AuditFinding:
+def take_back_decision(made: AuditDecision, by: User) -> AuditFinding:
     """Undo a decision of ``by``: the pair is what it was, and its item in the queue is theirs again.
 
     Raises Refusal where it is somebody else's, was taken back already, or the pair has

@@ -9,7 +9,7 @@ from django.db import transaction
 from django.db.models import Count, Q
 
 from annotations.labelling.enqueuing import ItemSubject, field_of
-from annotations.labelling.finishing import finish, take_back
+from annotations.labelling.finishing import finish, take_back_assignment
 from annotations.labelling.giving import NotForThem, close_item, take
 from annotations.models import Assignment, User, WorkItem, WorkKind
 from annotations.models.queueing import OCCUPYING, Outcome, WorkItemQuerySet
@@ -39,7 +39,7 @@ def unsettle(subject: ItemSubject, kind: WorkKind, by: User) -> None:
         if item is None or rows.open().exists():
             return
         if done := item.assignments.done().filter(person=by).first():
-            take_back(done)
+            take_back_assignment(done)
         else:
             item.closed_at, item.places = None, item.people
             item.save(update_fields=["closed_at", "places"])

@@ -71,7 +71,7 @@ class PeopleChange:
 
 
 @transaction.atomic
-def take_back(change: PeopleChange, by: User) -> str:
+def take_back_people_change(change: PeopleChange, by: User) -> str:
     """Make it as it was before ``change``, and return a sentence about it.
 
     Raises:

@@ -49,7 +49,7 @@ def write_note(run: TrainingRun, example: Example, note: str, by: User) -> Revie
     return _settle(_change(run, example, by, note=text))
 
 
-def take_back(run: TrainingRun, example: Example, by: User) -> Review | None:
+def take_back_review(run: TrainingRun, example: Example, by: User) -> Review | None:
     """Remove the tag that ``by`` gave; a note of theirs stays. Return the review that is left.
 
     Raises Refusal where they have tagged nothing here.

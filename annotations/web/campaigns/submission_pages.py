@@ -19,7 +19,7 @@ from annotations.campaigns.moderation import (
     accept_with_form,
     mend,
     reject,
-    take_back,
+    take_back_moderation,
 )
 from annotations.labelling.proposal_requests import request_readings
 from annotations.language.corpus import FlagCode
@@ -98,7 +98,7 @@ def submission_decide(request: WorldRequest, world: World, pk: int) -> HttpRespo
                 messages.success(request, "The text is mended. What was written is kept beside it.")
                 return redirect("submission", world=world.name, pk=row.pk)
             case "undo":
-                take_back(row, request.user)
+                take_back_moderation(row, request.user)
                 messages.success(request, "The decision is undone. It waits again.")
                 return redirect("submission", world=world.name, pk=row.pk)
             case "form":
@@ -152,7 +152,7 @@ def submissions_take_back(request: WorldRequest, world: World) -> HttpResponse:
     taken_back, refused = 0, ""
     for row in decided.exclude(status=SubmissionStatus.PENDING)[:MOST_AT_ONCE]:
         try:
-            take_back(row, request.user)
+            take_back_moderation(row, request.user)
         except Refusal as refusal:
             refused = str(refusal)
         else:

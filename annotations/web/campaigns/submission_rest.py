@@ -20,7 +20,7 @@ from annotations.campaigns.moderation import (
     accept_with_form,
     mend,
     reject,
-    take_back,
+    take_back_moderation,
 )
 from annotations.exchange.split_export import SplitFormat
 from annotations.language.texts import MAX_FORM
@@ -148,7 +148,7 @@ class SubmissionViewSet(RowsViewSet):
     @action(detail=True, methods=["post"], url_path="take-back")
     def take_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Undoes a decision: the submission waits again, and what was made of it goes."""
-        take_back(self.get_object(), request.user)
+        take_back_moderation(self.get_object(), request.user)
         return self.show(self.get_object())
 
     @extend_schema(request=MendedText, responses={200: SubmissionSerializer})

@@ -11,7 +11,7 @@ from rest_framework import serializers
 from rest_framework.decorators import action
 from rest_framework.response import Response
 
-from annotations.labelling.label_decisions import decide, take_back
+from annotations.labelling.label_decisions import decide, take_back_decision
 from annotations.language.texts import MAX_FORM, LanguageError
 from annotations.models import AuditDecision, AuditFinding, AuditReason, World
 from annotations.models.corpus import MOST_CHARACTERS
@@ -131,5 +131,5 @@ class AuditDecisionViewSet(WorldViewSet):
     @action(detail=True, methods=["post"], url_path="take-back")
     def take_back(self, request: ApiRequest, **kwargs: object) -> Response:
         """Undoes a decision of the caller; its label is in doubt again."""
-        finding = take_back(self.get_object(), request.user)
+        finding = take_back_decision(self.get_object(), request.user)
         return self.show(finding_rows(self.world).get(pk=finding.pk))

@@ -22,7 +22,7 @@ from annotations.people.members import (
     roles_of,
     set_roles,
 )
-from annotations.people.taking_back import PeopleChange, take_back
+from annotations.people.taking_back import PeopleChange, take_back_people_change
 from annotations.web.editing.undo import say_with_undo
 from annotations.web.people.member_forms import InvitationForm, MemberForm, RolesForm
 
@@ -79,7 +79,7 @@ def take_change_back(request: WorldRequest, world: World) -> HttpResponse:
     """Undo a change of roles, of members or of an invitation, as long as nobody has changed it again."""
     try:
         change = PeopleChange.read(request.POST.get("change", ""), world)
-        said = take_back(change, request.user)
+        said = take_back_people_change(change, request.user)
     except Refusal as error:
         note(request, f"refused: {error.message}")
         messages.error(request, error.message)

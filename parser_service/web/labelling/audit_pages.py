@@ -15,7 +15,7 @@ from django_htmx.http import reselect, reswap, retarget
 from annotations.labelling.form_check import check_label
 from annotations.labelling.giving import NotForThem, kinds_for
 from annotations.labelling.label_answers import AnsweredMeanwhile, NoLongerYours
-from annotations.labelling.label_decisions import DecidedMeanwhile, decide, take_back
+from annotations.labelling.label_decisions import DecidedMeanwhile, decide, take_back_decision
 from annotations.language.texts import Refusal
 from annotations.models import (
     AuditDecision,
@@ -130,7 +130,7 @@ def audit_take_back(request: WorldRequest, world: World, pk: int) -> HttpRespons
     """Undo a decision of this person, and show its label again."""
     made = get_object_or_404(AuditDecision.objects.filter(finding__world=world), pk=pk)
     try:
-        take_back(made, request.user)
+        take_back_decision(made, request.user)
     except Refusal as refusal:
         messages.error(request, str(refusal))
     return _to(request, world, made.finding)

@@ -26,7 +26,7 @@ from parser_service.parsers.registry import title_of
 from parser_service.reviews.cases import read_case
 from parser_service.reviews.label_doubts import LONGEST_DOUBT, doubt_label
 from parser_service.reviews.review_filters import ReviewFilters
-from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
+from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back_review, write_note
 from parser_service.reviews.world_categories import ensure_categories
 from parser_service.serving.default_runs import opening_run
 
@@ -88,7 +88,7 @@ def review(request: WorldRequest, world: World) -> HttpResponse:
 def review_tag(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     """Tag the answer of one run, accept what is proposed, or take the reader's tag back."""
     sent = request.POST
-    steps: dict[str, Callable[..., Any]] = {"accept": accept, "take_back": take_back}
+    steps: dict[str, Callable[..., Any]] = {"accept": accept, "take_back": take_back_review}
 
     def change(run: TrainingRun, example: Example) -> None:
         if sent.get("step") in steps:

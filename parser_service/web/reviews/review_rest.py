@@ -20,7 +20,7 @@ from annotations.web.rest.permissions import ApiRequest
 from annotations.web.rest.routes import RowRoute, RowsViewSet
 from parser_service.models import Review, TrainingRun
 from parser_service.reviews.label_doubts import LONGEST_DOUBT, doubt_label
-from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
+from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back_review, write_note
 from parser_service.reviews.world_categories import ensure_categories
 
 
@@ -128,7 +128,7 @@ class ReviewOfAnswer(AnswerRoute):
                     )
                 tag(*about, category, request.user)
             elif "category" in sent:
-                take_back(*about, request.user)
+                take_back_review(*about, request.user)
             if "note" in sent:
                 write_note(*about, sent["note"], request.user)
         return self.show(self.get_object())

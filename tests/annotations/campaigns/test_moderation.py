@@ -11,7 +11,7 @@ from annotations.campaigns.moderation import (
     accept_with_form,
     mend,
     reject,
-    take_back,
+    take_back_moderation,
 )
 from annotations.campaigns.progress import progress_of
 from annotations.campaigns.tasks import begin
@@ -76,13 +76,13 @@ def test_two_who_decide_at_once_decide_once(submissions, admin):
 def test_a_decision_is_taken_back(submissions, admin):
     accept(submissions, admin)
     for row in submissions:
-        assert take_back(row, admin).status == "pending"
+        assert take_back_moderation(row, admin).status == "pending"
     assert not Paraphrase.objects.exists()
     assert not Utterance.objects.exists()
     reject(submissions[:1], admin)
-    take_back(submissions[0], admin)
+    take_back_moderation(submissions[0], admin)
     with pytest.raises(Refusal) as refused:
-        take_back(submissions[0], admin)
+        take_back_moderation(submissions[0], admin)
     assert refused.value.code == "not_decided"
     assert accept(submissions, admin) == 4
     assert Utterance.objects.count() == 1
@@ -93,7 +93,7 @@ def test_what_was_edited_since_is_not_taken_back(submissions, admin):
     row = Paraphrase.objects.get()
     change(row, {"utterance": "another"}, admin, row.version)
     with pytest.raises(Refusal) as refused:
-        take_back(submissions[0], admin)
+        take_back_moderation(submissions[0], admin)
     assert refused.value.code == "edited_since"
     assert reread(submissions[0]).status == "accepted"
 
@@ -142,7 +142,7 @@ def test_a_doubted_label_goes_to_the_audit(submissions, admin):
 def test_who_is_forgotten_leaves_no_decision_that_was_taken_back(submissions, admin):
     accept(submissions, admin)
     for row in submissions:
-        take_back(row, admin)
+        take_back_moderation(row, admin)
     assert Utterance.with_deleted.exists()
     assert forget(submissions[0].contributor) == 4
     assert not Utterance.with_deleted.exists()
@@ -169,13 +169,13 @@ def test_an_utterance_that_was_here_before_is_not_theirs(launched, household, ad
     row = save_answer(contributor.submissions.get(kind="free"), text, 9)
     accept([row], admin)
     assert reread(row).utterance is None
-    take_back(reread(row), admin)
+    take_back_moderation(reread(row), admin)
     accept([reread(row)], admin)
     forget(contributor)
     assert Utterance.objects.get(text=text).origin == Origin.PASTED
 
 
-@pytest.mark.parametrize("goes", [take_back, None])
+@pytest.mark.parametrize("goes", [take_back_moderation, None])
 def test_what_two_people_say_stays_while_one_of_them_does(same, admin, goes):
     first, second = same
     utterance = first.utterance
@@ -184,7 +184,7 @@ def test_what_two_people_say_stays_while_one_of_them_does(same, admin, goes):
         if goes is None:
             forget(row.contributor)
         else:
-            take_back(reread(row), admin)
+            take_back_moderation(reread(row), admin)
         if other is not None:
             assert reread(other).utterance == utterance
     assert not Utterance.objects.exists()

@@ -28,7 +28,7 @@ from annotations.labelling.collecting import collect
 from annotations.labelling.enqueuing import set_share
 from annotations.labelling.finishing import finish
 from annotations.labelling.giving import next_item
-from annotations.labelling.label_answers import label, take_back
+from annotations.labelling.label_answers import label, take_back_label
 from annotations.labelling.label_decisions import decide
 from annotations.language.plans import ActionName
 from annotations.language.texts.errors import LanguageError
@@ -107,7 +107,7 @@ def test_utterances_keep_every_answer_with_its_time(tiny_world, annotator):
     collect(tiny_world, ["bring me tea", "hello"], by=annotator)
     first, second = tiny_world.utterances.all()
     label(first, Verdict.FORM, '(go "<room>")', annotator, 1, seconds=2.5)
-    take_back(label(second, Verdict.UNKNOWN, "", annotator, 1), annotator)
+    take_back_label(label(second, Verdict.UNKNOWN, "", annotator, 1), annotator)
     again = same_again(tiny_world)
     times = Label.objects.order_by("created_at").values_list("created_at", flat=True)
     assert len(times) == 4

@@ -7,7 +7,7 @@ import pytest
 from annotations.editing.row_versions import history_of_row
 from annotations.labelling.collecting import collect
 from annotations.labelling.entity_spans import mend_span
-from annotations.labelling.label_answers import label, restore_utterance, take_back
+from annotations.labelling.label_answers import label, restore_utterance, take_back_label
 from annotations.models import Label, Utterance, Verdict
 from annotations.rows.row_kinds import KINDS
 from tests.annotations.labelling.test_label_answers import BRING, CANONICAL, GO, state_of
@@ -31,7 +31,7 @@ def test_each_answer_that_counts_is_a_version_with_its_author(utterance, annotat
     label(utterance, Verdict.FORM, BRING, annotator, 1)
     label(utterance, Verdict.SKIP, "", admin, 2)
     last = label(utterance, Verdict.FORM, GO, admin, 2)
-    take_back(last, admin)
+    take_back_label(last, admin)
     versions = versions_of(utterance)
     assert [(each.number, each.author) for each in versions] == [
         (4, admin),
@@ -50,7 +50,7 @@ def test_an_older_version_is_restored_with_its_answer(utterance, annotator, admi
     assert state_of(utterance) == ("labelled", CANONICAL)
     assert restored.version == 4
     assert restored.accepted_label.annotator == admin
-    take_back(restored.accepted_label, admin)
+    take_back_label(restored.accepted_label, admin)
     assert state_of(utterance) == ("labelled", GO)
 
 

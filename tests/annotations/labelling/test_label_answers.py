@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from annotations.labelling.collecting import collect
-from annotations.labelling.label_answers import AnsweredMeanwhile, accept, label, take_back
+from annotations.labelling.label_answers import AnsweredMeanwhile, accept, label, take_back_label
 from annotations.language.texts.errors import Refusal
 from annotations.models import Label, Utterance, Verdict
 
@@ -78,11 +78,11 @@ def test_what_is_no_answer_is_refused(utterance, annotator, verdict, form, code,
 def test_only_the_person_takes_an_answer_back_and_once(utterance, annotator, admin):
     row = label(utterance, Verdict.UNKNOWN, "", annotator, 1)
     with pytest.raises(Refusal) as refused:
-        take_back(row, admin)
+        take_back_label(row, admin)
     assert (refused.value.code, refused.value.status) == ("not_their_answer", 409)
-    take_back(row, annotator)
+    take_back_label(row, annotator)
     with pytest.raises(Refusal) as refused:
-        take_back(row, annotator)
+        take_back_label(row, annotator)
     assert (refused.value.code, refused.value.status) == ("already_taken_back", 409)
 
 
@@ -108,5 +108,5 @@ def test_taking_back_brings_back_what_was_there(utterance, annotator, answers):
         states.append(state_of(utterance))
     for row in reversed(rows):
         assert state_of(utterance) == states.pop()
-        take_back(row, annotator)
+        take_back_label(row, annotator)
     assert state_of(utterance) == ("unlabelled", "")

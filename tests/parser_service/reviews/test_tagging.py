@@ -6,7 +6,7 @@ import pytest
 
 from annotations.language.texts.errors import Refusal
 from parser_service.models import Review
-from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back, write_note
+from parser_service.reviews.tagging import LONGEST_NOTE, accept, tag, take_back_review, write_note
 from parser_service.reviews.world_categories import ensure_categories
 
 
@@ -64,20 +64,20 @@ def test_a_category_of_another_world_is_refused(run, wrong, other_world, reviewe
 
 def test_taking_back_leaves_the_note_alone(run, wrong, categories, reviewer):
     tag(run, wrong, categories["ill_formed"], reviewer)
-    assert take_back(run, wrong, reviewer) is None
+    assert take_back_review(run, wrong, reviewer) is None
     assert not run.reviews.by_people().exists()
     tag(run, wrong, categories["ill_formed"], reviewer)
     write_note(run, wrong, "Odd.", reviewer)
-    assert take_back(run, wrong, reviewer).note == "Odd."
+    assert take_back_review(run, wrong, reviewer).note == "Odd."
     with pytest.raises(Refusal) as refused:
-        take_back(run, wrong, reviewer)
+        take_back_review(run, wrong, reviewer)
     assert refused.value.code == "not_tagged"
 
 
 def test_nobody_takes_back_what_somebody_else_says(run, wrong, categories, reviewer, admin):
     tag(run, wrong, categories["ill_formed"], reviewer)
     with pytest.raises(Refusal) as refused:
-        take_back(run, wrong, admin)
+        take_back_review(run, wrong, admin)
     assert refused.value.code == "not_tagged"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from annotations.editing.edits import change
 from annotations.labelling.audit_findings import store_findings
-from annotations.labelling.label_decisions import decide, take_back
+from annotations.labelling.label_decisions import decide, take_back_decision
 from annotations.language.corpus.label_errors import Reason
 from annotations.models import FindingStatus, WorkKind
 from tests.annotations.labelling.label_audit.conftest import finding_of
@@ -75,7 +75,7 @@ def test_a_decision_of_before_is_taken_back_beside_a_newer_audit(world, findings
     changed = change(girls, {"logical_form": GO}, annotator, girls.version)
     store_findings(world, [doubt(changed)])
     change(girls, {"logical_form": MALE}, annotator, changed.version)
-    take_back(made, annotator)
+    take_back_decision(made, annotator)
     assert girls.audit_findings.get().decisions.get() == made
 
 

@@ -9,7 +9,7 @@ from annotations.generation.freezing import freeze_split
 from annotations.labelling.giving import NotForThem, next_item
 from annotations.labelling.item_answers import answer
 from annotations.labelling.label_changes import examples_before
-from annotations.labelling.label_decisions import DecidedMeanwhile, decide, take_back
+from annotations.labelling.label_decisions import DecidedMeanwhile, decide, take_back_decision
 from annotations.labelling.utterance_deletion import delete_utterances
 from annotations.language.texts.errors import LanguageError, Refusal
 from annotations.models import (
@@ -63,7 +63,7 @@ def test_what_no_form_says_becomes_unknown(findings, girls, women, annotator):
     assert state_of(women)[0] == "unknown"
     assert women.accepted_label.verdict == Verdict.UNKNOWN
     assert finding_of(women).decided_form == "UNKNOWN"
-    take_back(finding_of(women).decision, annotator)
+    take_back_decision(finding_of(women).decision, annotator)
     assert state_of(women)[:2] == ("labelled", MALE)
 
 
@@ -93,19 +93,19 @@ def test_taken_back_it_is_as_before(decision, name, findings, annotator, request
     row = request.getfixturevalue(name)
     before = state_of(row)
     made = decide(finding_of(row), decision, annotator)
-    assert take_back(made, annotator).is_open
+    assert take_back_decision(made, annotator).is_open
     assert state_of(row) == before
     assert finding_of(row) in findings.open()
     assert finding_of(row).decision is None and AuditDecision.objects.count() == 1
     with pytest.raises(Refusal) as refused:
-        take_back(made, annotator)
+        take_back_decision(made, annotator)
     assert (refused.value.code, refused.value.status) == ("already_taken_back", 409)
 
 
 def test_only_who_decided_takes_it_back(findings, girls, annotator, berta):
     made = decide(finding_of(girls), KEEP, annotator)
     with pytest.raises(Refusal) as refused:
-        take_back(made, berta)
+        take_back_decision(made, berta)
     assert (refused.value.code, refused.value.status) == ("not_their_decision", 409)
     assert finding_of(girls).status == KEEP
 
@@ -118,7 +118,7 @@ def test_nothing_that_others_did_since_is_undone(findings, girls, women, annotat
     answer(women, Verdict.FORM, GO, berta, women.version)
     for made in (corrected, kept):
         with pytest.raises(Refusal) as refused:
-            take_back(made, annotator)
+            take_back_decision(made, annotator)
         assert (refused.value.code, refused.value.status) == ("changed_since", 409)
     assert [state_of(girls)[1], state_of(women)[1]] == [GO, GO]
 
@@ -134,7 +134,7 @@ def test_nothing_is_decided_about_a_deleted_utterance(findings, women, annotator
     made = decide(finding_of(women), KEEP, annotator)
     delete_utterances([women.pk], annotator)
     with pytest.raises(Refusal):
-        take_back(made, annotator)
+        take_back_decision(made, annotator)
     AuditFinding.objects.filter(utterance=women).update(status=FindingStatus.OPEN)
     AuditDecision.objects.all().delete()
     with pytest.raises(DecidedMeanwhile) as refused:
@@ -181,7 +181,7 @@ def test_a_decision_ends_the_item_and_taking_it_back_opens_it(world, findings, g
     made = decide(finding_of(girls), EXCLUDE, annotator)
     held.item.refresh_from_db()
     assert held.item.closed_at and held.item.assignments.get().outcome == "done"
-    take_back(made, annotator)
+    take_back_decision(made, annotator)
     assert next_item(annotator, world).item == held.item
 
 
@@ -189,7 +189,7 @@ def test_a_decision_ends_the_item_of_somebody_else(world, findings, girls, annot
     held = next_item(berta, world)
     made = decide(finding_of(girls), KEEP, annotator)
     assert next_item(berta, world).item != held.item
-    take_back(made, annotator)
+    take_back_decision(made, annotator)
     assert world.work_items.open().count() == 2
 
 
