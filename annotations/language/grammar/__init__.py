@@ -35,4 +35,11 @@ from annotations.language.grammar.ranking import (
     RankedSequence,
     Ranking,
 )
-from annotations.language.grammar.recognizer import Alternative, Chart, Recognizer, RuleBook, Run
+from annotations.language.grammar.recognizer import (
+    Alternative,
+    Chart,
+    ChartRule,
+    Recognizer,
+    RuleBook,
+    Run,
+)

@@ -21,6 +21,7 @@ from annotations.language.grammar import (
     Arc,
     Budget,
     Chart,
+    ChartRule,
     Expander,
     Lattice,
     RuleBook,
@@ -79,6 +80,11 @@ class TemplateChart:
 
     def __init__(self, categories: Sequence[TaskCategory]) -> None:
         self._sets = [_TemplateSet(category) for category in categories]
+
+    @property
+    def rules(self) -> list[tuple[Sequence[ChartRule], int]]:
+        """The rules of each task category, and which of them is a command."""
+        return [(each.book.rules, each.root) for each in self._sets]
 
     @cached_property
     def vocabulary(self) -> frozenset[str]:
