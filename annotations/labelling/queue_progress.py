@@ -29,7 +29,7 @@ class PersonProgress:
 
 @dataclass(frozen=True, slots=True)
 class QueueProgress:
-    """The last ``DAYS`` days, from the first on which somebody did something."""
+    """The last ``DAYS`` days. They begin with the first day of work among them."""
 
     days: tuple[date, ...]
     people: tuple[PersonProgress, ...]

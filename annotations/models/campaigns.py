@@ -33,7 +33,7 @@ class Wording(models.TextChoices):
 
 
 class Balance(models.TextChoices):
-    """What gets equally many prompts: each form, or each line of the templates, of which a form may have many."""
+    """What gets equally many prompts: each form, or each line of the templates. A form may have many lines."""
 
     FORMS = "forms"
     LINES = "lines"

@@ -113,7 +113,7 @@ class NearestNeighbour(PairKeeper):
         return answers
 
     def keep(self, pairs: list[tuple[str, str]], trained: int | None = None) -> None:
-        """Keep ``pairs``, of which the first ``trained``, by default all, are training pairs."""
+        """Keep ``pairs``. The first ``trained`` of them are training pairs; by default all."""
         self._pairs = pairs
         self._trained_forms = {form for _, form in pairs[:trained]}
         self._forms = sorted({form for _, form in pairs})

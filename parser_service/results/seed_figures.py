@@ -70,7 +70,7 @@ def figure_of(
     published: float | None = None,
     known: Sequence[Evaluation] | None = None,
 ) -> AccuracyFigure:
-    """Return the figure over ``scores``, one per seed, of which there is at least one.
+    """Return the figure over ``scores``, one per seed and at least one.
 
     ``known`` are the scores on known forms, one per seed, where the split is by form; none where they
     were not held out. It is None for other splits.

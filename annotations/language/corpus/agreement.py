@@ -137,7 +137,7 @@ def _bootstrap(
 ) -> tuple[float, float] | None:
     """Return the 2.5th and 97.5th percentile over samples of items drawn with replacement.
 
-    None for very few items, of which samples say nothing.
+    None for so few items that samples say nothing.
     """
     if ratings.items < FEWEST_ITEMS:
         return None

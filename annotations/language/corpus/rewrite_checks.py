@@ -31,7 +31,7 @@ class RewriteFault(StrEnum):
 class Named:
     """An entity of a prompt: what the prompt calls it, and its other names.
 
-    ``is_described`` says that ``text`` is a description, of which people keep a word or two: "pointing to the
+    ``is_described`` says that ``text`` is a description; people keep a word or two of it: "pointing to the
     left", "the day of the week".
     """
 

@@ -163,7 +163,7 @@ def by_length(pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
 def _group_lines(
     data: bytes, source: str, size: int, problems: list[Problem]
 ) -> Iterator[tuple[Sequence[str], Sequence[Position]]]:
-    """Yield groups of ``size`` lines, of which the last is a form, with their positions.
+    """Yield groups of ``size`` lines with their positions. The last line of each is a form.
 
     A blank line is left out where the next one goes on as expected; otherwise it stands for the line that
     is missing there. Leftover lines are a problem.

@@ -481,7 +481,7 @@ class _Group:
 def shuffled(size: int, random: Random) -> Iterator[int]:
     """Yield the numbers from 0 to ``size`` - 1, each once, in an order that ``random`` chooses.
 
-    This is the shuffle of Fisher and Yates, of which only what has been moved is kept: memory grows with the
+    This is the shuffle of Fisher and Yates. Only what has been moved is kept: memory grows with the
     numbers that are asked for, whatever the size.
     """
     moved: dict[int, int] = {}

@@ -68,7 +68,7 @@ Reader = Callable[[str], Iterator[ReadRow]]
 
 
 def _read_column(pattern: re.Pattern[str]) -> Reader:
-    """Return a reader of the cells that match, of which the first is taken for the head."""
+    """Return a reader of the cells that match. The first of them is the head."""
 
     def read(text: str) -> Iterator[ReadRow]:
         for number, cell in enumerate(pattern.finditer(text)):

@@ -210,8 +210,8 @@ class CampaignForm(forms.Form):
         ]
 
     def clean_ends_at(self) -> datetime | None:
-        """Return the end of the last day, of which something has to be left: a day of whoever sets it, over REST of
-        UTC."""
+        """Return the end of the last day, which must lie ahead. The time zone is that of the person; over REST it
+        is UTC."""
         day: date | None = self.cleaned_data["ends_at"]
         if day is None:
             return None

@@ -80,7 +80,7 @@ class PersonProgressSerializer(serializers.Serializer[Any]):
 
 
 class ProgressSerializer(serializers.Serializer[Any]):
-    """The last days, from the first on which somebody did something."""
+    """The last days. They begin with the first day of work among them."""
 
     days = serializers.ListField(child=serializers.DateField())
     people = PersonProgressSerializer(many=True)

@@ -93,7 +93,7 @@ class AlternativeSerializer(Fields):
 
 
 class ParseQuery(AskedParser, Fields):
-    """An utterance, or the ``alternatives`` of a recogniser, of which the best that is understood is answered."""
+    """An utterance, or the ``alternatives`` of a recogniser. The best one that is understood is answered."""
 
     utterance = serializers.CharField(
         max_length=MOST_CHARACTERS, trim_whitespace=False, default="", allow_blank=True
