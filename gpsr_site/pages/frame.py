@@ -15,14 +15,14 @@ from django.utils.functional import SimpleLazyObject
 from annotations.models import Duty, Notice, World
 from gpsr_site.overview.counts import Counts, counts_of
 from gpsr_site.overview.workers import workers_now
-from gpsr_site.pages.places import GROUPS, Place, way_to
+from gpsr_site.pages.rail import GROUPS, RailEntry, way_to
 
 CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the reader has closed
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
-    """A ``Place`` as the rail or a row of tabs draws it; ``dot`` says what waits there."""
+class RailLink:
+    """A ``RailEntry`` as the rail or a row of tabs draws it; ``dot`` says what waits there."""
 
     label: str
     url: str
@@ -33,10 +33,10 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class RailGroup:
-    """The entries below one heading of the rail."""
+    """The links below one heading of the rail."""
 
     heading: str
-    entries: list[Entry]
+    links: list[RailLink]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,20 +71,20 @@ def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
         return {"world": None, "can": can, "rail": [], "tabs": [], "trail": [], "page_name": ""}
     # One count for the rail and the tabs, once one of them is drawn.
     counts: Any = SimpleLazyObject(lambda: getattr(request, "counts", None) or counts_of(world))
-    page, way = _place_of(request)
+    page, way = _way_of(request)
     here = way[-1] if way and way[-1].page == page else None
     return {
         "world": world,
         "can": can,
         "rail": SimpleLazyObject(lambda: _rail(world, counts, way)),
         "tabs": SimpleLazyObject(lambda: list(_tabs(world, counts, duties, way)) if here else []),
-        "trail": [Crumb(place.label, _url_of(world, place)) for place in way if place is not here],
+        "trail": [Crumb(entry.label, _url_of(world, entry)) for entry in way if entry is not here],
         "page_name": way[-1].label if way else "",
     }
 
 
-def _place_of(request: HttpRequest) -> tuple[str, tuple[Place, ...]]:
-    """Return the URL name of the page and the places on the way to it."""
+def _way_of(request: HttpRequest) -> tuple[str, tuple[RailEntry, ...]]:
+    """Return the URL name of the page and the entries on the way to it."""
     match = request.resolver_match
     if match is None or match.url_name is None:
         return "", ()
@@ -92,39 +92,39 @@ def _place_of(request: HttpRequest) -> tuple[str, tuple[Place, ...]]:
     return match.url_name, way_to(match.kwargs.get("kind", match.url_name))
 
 
-def _rail(world: World, counts: Counts, way: tuple[Place, ...]) -> list[RailGroup]:
+def _rail(world: World, counts: Counts, way: tuple[RailEntry, ...]) -> list[RailGroup]:
     return [
         RailGroup(
-            group.heading, [_entry(place, world, counts, place in way) for place in group.places]
+            group.heading, [_link(entry, world, counts, entry in way) for entry in group.entries]
         )
         for group in GROUPS
     ]
 
 
 def _tabs(
-    world: World, counts: Counts, duties: frozenset[Duty], way: tuple[Place, ...]
-) -> Iterator[Entry]:
-    """Yield the tabs of a place. A place whose page bears its name is the first of them."""
-    place, here = way[0], way[-1]
-    tabs = [tab for tab in place.tabs if tab.duty in duties]
-    if tabs and place.has_page:
-        yield _entry(place, world, counts, here is place, is_tab=True)
+    world: World, counts: Counts, duties: frozenset[Duty], way: tuple[RailEntry, ...]
+) -> Iterator[RailLink]:
+    """Yield the tabs of an entry. A entry whose page bears its name is the first of them."""
+    entry, here = way[0], way[-1]
+    tabs = [tab for tab in entry.tabs if tab.duty in duties]
+    if tabs and entry.has_page:
+        yield _link(entry, world, counts, here is entry, is_tab=True)
     for tab in tabs:
-        yield _entry(tab, world, counts, here is tab)
+        yield _link(tab, world, counts, here is tab)
 
 
-def _entry(
-    place: Place, world: World, counts: Counts, is_current: bool, is_tab: bool = False
-) -> Entry:
-    waiting = place.waiting_here if is_tab else place.sentence
-    return Entry(
-        label=place.label,
-        url=_url_of(world, place),
-        count=getattr(counts, place.count) if place.count else None,
+def _link(
+    entry: RailEntry, world: World, counts: Counts, is_current: bool, is_tab: bool = False
+) -> RailLink:
+    waiting = entry.waiting_here if is_tab else entry.sentence
+    return RailLink(
+        label=entry.label,
+        url=_url_of(world, entry),
+        count=getattr(counts, entry.count) if entry.count else None,
         dot=waiting(counts),
         is_current=is_current,
     )
 
 
-def _url_of(world: World, place: Place) -> str:
-    return reverse(place.page, kwargs={"world": world.name}) + place.query
+def _url_of(world: World, entry: RailEntry) -> str:
+    return reverse(entry.page, kwargs={"world": world.name}) + entry.query

@@ -89,7 +89,7 @@ def test_the_banner_never_comes_from_a_cache(annotator, client):
 
 
 def entries_of(answer) -> dict[str, object]:
-    return {entry.label: entry for group in answer.context["rail"] for entry in group.entries}
+    return {entry.label: entry for group in answer.context["rail"] for entry in group.links}
 
 
 def current_entries(answer) -> list[str]:
@@ -112,7 +112,7 @@ def test_the_rail_shows_counts_the_current_page_and_what_waits(sample, annotator
 def test_the_groups_of_the_rail_follow_the_flow(sample, annotator, client):
     client.force_login(annotator)
     groups = client.get("/w/home/").context["rail"]
-    assert [(group.heading, [entry.label for entry in group.entries]) for group in groups] == [
+    assert [(group.heading, [entry.label for entry in group.links]) for group in groups] == [
         ("", ["Overview"]),
         ("Describe", ["Ontology", "Grammar", "Templates", "Coverage", "Recipes"]),
         ("Collect", ["Commands", "Paraphrases", "Utterances", "Queue"]),

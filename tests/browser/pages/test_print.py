@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gpsr_site.pages.places import all_places
+from gpsr_site.pages.rail import all_entries
 from tests.browser.faults import SETTLED, only_faults, printed
 from tests.gpsr_site.routes.addresses import address
 from tests.parser_service.made_up import make_split
@@ -15,11 +15,11 @@ pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
 def test_a_chosen_theme_is_not_printed(page_of, live_server, sample, admin):
     page, reports = page_of(admin), {}
-    for place in all_places():
-        answer = page.goto(live_server.url + address(place.page, sample))
-        assert answer.status < 400, place
+    for entry in all_entries():
+        answer = page.goto(live_server.url + address(entry.page, sample))
+        assert answer.status < 400, entry
         page.evaluate("document.documentElement.dataset.theme = 'dark'")
-        reports[place.label] = printed(page)
+        reports[entry.label] = printed(page)
     assert only_faults(reports) == {}
 
 

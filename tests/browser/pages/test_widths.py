@@ -9,7 +9,7 @@ from django.utils import timezone
 from playwright.sync_api import Page, expect
 
 from annotations.models.background import Queue
-from gpsr_site.pages.places import all_places
+from gpsr_site.pages.rail import all_entries
 from parser_service.models import Worker
 from tests.browser.faults import SETTLED
 from tests.gpsr_site.routes.addresses import address
@@ -59,18 +59,18 @@ def test_no_page_scrolls_sideways(state, page_of, live_server, sample, admin):
         work(queue)
     page = page_of(admin)
     faults = []
-    for place in all_places():
+    for entry in all_entries():
         page.context.clear_cookies(name="closed_notice")
-        answer = page.goto(live_server.url + address(place.page, sample))
-        assert answer.status < 400, place
+        answer = page.goto(live_server.url + address(entry.page, sample))
+        assert answer.status < 400, entry
         banner = page.locator("#banner [data-notice]")
         expect(banner).to_have_count(0 if state == "all workers" else 1)
         page.evaluate(SETTLED)
-        faults += [(place.label, "open", *fault) for fault in faults_of(page)]
+        faults += [(entry.label, "open", *fault) for fault in faults_of(page)]
         if state != "all workers":
             page.set_viewport_size({"width": WIDTHS[0], "height": 800})
             banner.get_by_role("button", name="Close this notice").click()
-            faults += [(place.label, "closed", *fault) for fault in faults_of(page)]
+            faults += [(entry.label, "closed", *fault) for fault in faults_of(page)]
     assert faults == []
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-from gpsr_site.pages.places import all_places, way_to
+from gpsr_site.pages.rail import all_entries, way_to
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.listing import ALL_ROUTES, API_ROUTES, ROUTES_OF_WORLDS
 from tests.gpsr_site.routes.policy import POLICY
@@ -13,7 +13,7 @@ from tests.gpsr_site.routes.rules import undone
 
 METHODS = sorted({(rule.name, rule.method) for rule in POLICY if rule.name not in API_ROUTES})
 # The list of all worlds and what is about no kind of work have no entry in the rail of a world.
-WITHOUT_PLACE = {"search", "comment"}
+WITHOUT_ENTRY = {"search", "comment"}
 DOCUMENTS = {"documents", "document"}  # their heading is that of the text
 
 
@@ -93,27 +93,27 @@ def check_names(page: str, names: Names) -> None:
     if page not in DOCUMENTS:
         assert [plain(heading) for heading in names.headings] == [called], names
     assert plain(names.title).startswith(called), names
-    if page in ROUTES_OF_WORLDS - WITHOUT_PLACE:
+    if page in ROUTES_OF_WORLDS - WITHOUT_ENTRY:
         (entry,) = names.marked
         assert plain(entry) in map(plain, names.crumbs), names
 
 
 def test_a_place_has_the_name_of_its_entry(sample, client_as, subtests):
-    for place in all_places():
-        if place.has_page:
-            with subtests.test(place.label), undone():
-                names = names_of(client_as("superuser").get(address(place.page, sample)))
-                assert plain(names.crumbs[-1]) == place.label
+    for entry in all_entries():
+        if entry.has_page:
+            with subtests.test(entry.label), undone():
+                names = names_of(client_as("superuser").get(address(entry.page, sample)))
+                assert plain(names.crumbs[-1]) == entry.label
 
 
-def test_every_place_is_the_way_to_its_own_page():
-    for place in all_places():
-        *_, last = way_to(place.page)
-        assert last.page == place.page and place.page in ALL_ROUTES
-        for page in place.pages_below:
-            assert way_to(page)[-1] is place and page in ALL_ROUTES
+def test_every_entry_is_the_way_to_its_own_page():
+    for entry in all_entries():
+        *_, last = way_to(entry.page)
+        assert last.page == entry.page and entry.page in ALL_ROUTES
+        for page in entry.pages_below:
+            assert way_to(page)[-1] is entry and page in ALL_ROUTES
 
 
 def test_no_place_has_the_name_of_another():
-    labels = [place.label for place in all_places()]
+    labels = [entry.label for entry in all_entries()]
     assert len(labels) == len(set(labels))

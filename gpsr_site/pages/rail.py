@@ -1,4 +1,4 @@
-"""The pages of a world in the order of the flow: groups of the rail, their places, and the tabs of a place."""
+"""The pages of a world in the order of the flow: groups of the rail, their entries, and the tabs of an entry."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class Waiting:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class RailEntry:
     """A page that the rail or a row of tabs leads to.
 
     ``label`` is its one name: in the rail or on its tab, as its heading, in the breadcrumb and as its title.
     ``page`` and ``pages_below`` are URL names; the pages below have names of their own. Those of the rows of a kind
-    are below its list, and are not named. The first tab of a place with tabs is the place itself. ``query`` is the
+    are below its list, and are not named. The first tab of an entry with tabs is the entry itself. ``query`` is the
     filter with which its tab opens. ``count`` is a field of ``Counts`` that stands beside the label. Only people with
     ``duty`` see the tab.
     """
@@ -48,15 +48,15 @@ class Place:
     waiting: Waiting | None = None
     duty: Duty = Duty.VIEW
     pages_below: tuple[str, ...] = ()
-    tabs: tuple[Place, ...] = ()
+    tabs: tuple[RailEntry, ...] = ()
 
     @property
     def has_page(self) -> bool:
         """Whether a page bears its label: ``Settings`` has tabs alone, and leads to the first of them."""
         return all(tab.page != self.page for tab in self.tabs)
 
-    def way_to(self, page: str) -> tuple[Place, ...]:
-        """Return the places on the way to a page, from this one on; empty where it is not here."""
+    def way_to(self, page: str) -> tuple[RailEntry, ...]:
+        """Return the entries on the way to a page, from this one on; empty where it is not here."""
         for tab in self.tabs:
             if way := tab.way_to(page):
                 return (self, *way)
@@ -77,64 +77,64 @@ class Group:
     """Places of the rail below one heading; the first and the last group need none."""
 
     heading: str
-    places: tuple[Place, ...]
+    entries: tuple[RailEntry, ...]
 
 
 DESCRIBE = (
-    Place(
+    RailEntry(
         label="Ontology",
         page="ontology",
         count="entities",
         waiting=Waiting(count="ontology_problems", noun="warning", reason="to read"),
         pages_below=("entities_new", "location_rooms"),
         tabs=(
-            Place(label="Classes", page="entity_classes"),
-            Place(label="Predicates", page="predicates"),
-            Place(label="Words from dialogues", page="offered_entities"),
+            RailEntry(label="Classes", page="entity_classes"),
+            RailEntry(label="Predicates", page="predicates"),
+            RailEntry(label="Words from dialogues", page="offered_entities"),
         ),
     ),
-    Place(
+    RailEntry(
         label="Grammar",
         page="grammar",
         count="productions",
         waiting=Waiting(count="grammar_problems", noun="warning", reason="to read"),
     ),
-    Place(
+    RailEntry(
         label="Templates",
         page="templates",
         count="templates",
         waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
     ),
-    Place(
+    RailEntry(
         label="Coverage",
         page="uncovered",
         tabs=(
-            Place(label="Templates without effect", page="unmatched"),
-            Place(label="Conflicts", page="conflicts"),
-            Place(label="Outside the grammar", page="outside_grammar"),
+            RailEntry(label="Templates without effect", page="unmatched"),
+            RailEntry(label="Conflicts", page="conflicts"),
+            RailEntry(label="Outside the grammar", page="outside_grammar"),
         ),
     ),
-    Place(label="Recipes", page="recipes"),
+    RailEntry(label="Recipes", page="recipes"),
 )
 
 COLLECT = (
-    Place(
+    RailEntry(
         label="Commands",
         page="commands",
         count="commands",
         waiting=Waiting(count="generation_waiting", reason="to be generated"),
         pages_below=("command", "generation"),
         tabs=(
-            Place(label="Logical forms", page="logical_forms", pages_below=("logical_form",)),
-            Place(label="Complexity", page="complexity"),
+            RailEntry(label="Logical forms", page="logical_forms", pages_below=("logical_form",)),
+            RailEntry(label="Complexity", page="complexity"),
         ),
     ),
-    Place(
+    RailEntry(
         label="Paraphrases",
         page="paraphrases",
         count="paraphrases",
         tabs=(
-            Place(
+            RailEntry(
                 label="Campaigns",
                 page="campaigns",
                 duty=Duty.MANAGE,
@@ -143,7 +143,7 @@ COLLECT = (
                     *("campaign_model", "contributor_forget"),
                 ),
             ),
-            Place(
+            RailEntry(
                 label="Moderation",
                 page="submissions",
                 query="?status=pending",
@@ -151,12 +151,12 @@ COLLECT = (
                 waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
                 pages_below=("submission", "submission_decide"),
             ),
-            Place(label="Figures", page="paraphrase_figures"),
-            Place(label="Figures by form", page="paraphrase_forms"),
-            Place(label="Contributors", page="paraphrase_contributors", duty=Duty.REVIEW),
+            RailEntry(label="Figures", page="paraphrase_figures"),
+            RailEntry(label="Figures by form", page="paraphrase_forms"),
+            RailEntry(label="Contributors", page="paraphrase_contributors", duty=Duty.REVIEW),
         ),
     ),
-    Place(
+    RailEntry(
         label="Utterances",
         page="utterances",
         count="utterances",
@@ -166,36 +166,36 @@ COLLECT = (
             reason="without a form, not waiting in the queue",
         ),
         pages_below=("utterances_new", "utterances_delete"),
-        tabs=(Place(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
+        tabs=(RailEntry(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
     ),
-    Place(
+    RailEntry(
         label="Queue",
         page="queue",
         count="work_items",
         waiting=Waiting(count="work_items_free", noun="item", reason="to do"),
         pages_below=("queue_item", "label"),
         tabs=(
-            Place(label="Label audit", page="audit"),
-            Place(label="Agreement", page="agreement"),
-            Place(label="Progress", page="progress"),
-            Place(label="Guidelines", page="guidelines"),
-            Place(label="Double labelling", page="queue_settings", duty=Duty.MANAGE),
+            RailEntry(label="Label audit", page="audit"),
+            RailEntry(label="Agreement", page="agreement"),
+            RailEntry(label="Progress", page="progress"),
+            RailEntry(label="Guidelines", page="guidelines"),
+            RailEntry(label="Double labelling", page="queue_settings", duty=Duty.MANAGE),
         ),
     ),
 )
 
 TRAIN_AND_JUDGE = (
-    Place(
+    RailEntry(
         label="Splits", page="splits", count="splits", pages_below=("split", "split_new", "example")
     ),
-    Place(
+    RailEntry(
         label="Runs",
         page="runs",
         count="runs",
         waiting=Waiting(count="runs_active", noun="run", reason="queued or running"),
         pages_below=("run", "run_new", "predictions", "defaults", "sensitivity", "probes"),
         tabs=(
-            Place(
+            RailEntry(
                 label="Promotion",
                 page="promotions",
                 waiting=Waiting(
@@ -204,50 +204,52 @@ TRAIN_AND_JUDGE = (
             ),
         ),
     ),
-    Place(
+    RailEntry(
         label="Results",
         page="results",
         count="evaluated",
         tabs=(
-            Place(label="Compare", page="compare"),
-            Place(label="Slices", page="slices"),
-            Place(label="Learning curves", page="learning_curves"),
+            RailEntry(label="Compare", page="compare"),
+            RailEntry(label="Slices", page="slices"),
+            RailEntry(label="Learning curves", page="learning_curves"),
         ),
     ),
-    Place(label="Review", page="review", pages_below=("error_categories", "error_category")),
+    RailEntry(label="Review", page="review", pages_below=("error_categories", "error_category")),
 )
 
 USE = (
-    Place(
+    RailEntry(
         label="Parse",
         page="playground",
         tabs=(
-            Place(label="Try a text", page="tryout"),
-            Place(label="Dialogue", page="dialogues", pages_below=("dialogue",)),
-            Place(label="Several commands", page="joint_plan"),
-            Place(label="Robot", page="robot"),
+            RailEntry(label="Try a text", page="tryout"),
+            RailEntry(label="Dialogue", page="dialogues", pages_below=("dialogue",)),
+            RailEntry(label="Several commands", page="joint_plan"),
+            RailEntry(label="Robot", page="robot"),
         ),
     ),
 )
 
-SETTINGS = Place(
+SETTINGS = RailEntry(
     label="Settings",
     page="people",
     tabs=(
-        Place(label="People", page="people", pages_below=("invite",)),
-        Place(
+        RailEntry(label="People", page="people", pages_below=("invite",)),
+        RailEntry(
             label="Import and export",
             page="import",
             pages_below=("import_competition", "import_pairs"),
         ),
-        Place(label="Jobs", page="jobs", pages_below=("job",)),
-        Place(label="Audit log", page="audit_log", duty=Duty.MANAGE),
-        Place(label="World", page="world_edit", duty=Duty.MANAGE, pages_below=("world_delete",)),
+        RailEntry(label="Jobs", page="jobs", pages_below=("job",)),
+        RailEntry(label="Audit log", page="audit_log", duty=Duty.MANAGE),
+        RailEntry(
+            label="World", page="world_edit", duty=Duty.MANAGE, pages_below=("world_delete",)
+        ),
     ),
 )
 
 GROUPS = (
-    Group("", (Place(label="Overview", page="world"),)),
+    Group("", (RailEntry(label="Overview", page="world"),)),
     Group("Describe", DESCRIBE),
     Group("Collect", COLLECT),
     Group("Train and judge", TRAIN_AND_JUDGE),
@@ -260,20 +262,20 @@ LISTS = {kind.name: kind.list_page for kind in KINDS.values()}
 LISTS |= {"form": "logical_forms"}
 
 
-def way_to(page: str) -> tuple[Place, ...]:
-    """Return the places on the way to a page of a world, the one of the rail first; empty for a page of no place.
+def way_to(page: str) -> tuple[RailEntry, ...]:
+    """Return the entries on the way to a page of a world, the one of the rail first; empty for a page of no entry.
 
     ``page`` is a URL name, or the name of a kind: the page of a row, and of a new one, is below the list of its kind.
     """
     page = LISTS.get(page.removesuffix("_new"), page)
-    ways = (place.way_to(page) for group in GROUPS for place in group.places)
+    ways = (entry.way_to(page) for group in GROUPS for entry in group.entries)
     return next(filter(None, ways), ())
 
 
-def all_places() -> Iterator[Place]:
-    """Yield every place of the rail and every tab, each after the place that holds it."""
-    waiting = [place for group in reversed(GROUPS) for place in reversed(group.places)]
+def all_entries() -> Iterator[RailEntry]:
+    """Yield every entry of the rail and every tab, each after the entry that holds it."""
+    waiting = [entry for group in reversed(GROUPS) for entry in reversed(group.entries)]
     while waiting:
-        place = waiting.pop()
-        yield place
-        waiting += reversed(place.tabs)
+        entry = waiting.pop()
+        yield entry
+        waiting += reversed(entry.tabs)
