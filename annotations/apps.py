@@ -40,7 +40,7 @@ class AnnotationsConfig(WorkbenchApp):
         "import_generator": "annotations.exchange.import_jobs.import_generator_of",
         "import_competition": "annotations.exchange.import_jobs.import_competition_of",
         "import_pairs": "annotations.exchange.import_jobs.import_pairs_of",
-        "import_world": "annotations.exchange.import_job.import_world_of",
+        "import_world": "annotations.exchange.world_import_job.import_world_of",
         "load_world": "annotations.exchange.shipped_worlds.load_world_of",
         "import_results": "annotations.campaigns.crowd_jobs.import_results_of",
         "generate": "annotations.generation.generating.generate_pairs_of",

@@ -14,6 +14,7 @@ from parser_service.results.published import PUBLISHED, published_accuracy
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
+PACKAGES = ("annotations", "parser_service", "gpsr_site", "tests")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 VARIABLES = (DOCS / "reference" / "variables.md").read_text(encoding="utf-8")
 COMMANDS = (DOCS / "reference" / "commands.md").read_text(encoding="utf-8")
@@ -116,6 +117,28 @@ def test_files_and_modules_that_a_page_names_are_there():
     assert missing == []
 
 
+DOTTED = re.compile(r"``((?:\w+\.)+(?!json)\w+)``")
+
+
+def test_modules_that_docstrings_name_are_there():
+    """By their whole path, such as ``parser_service.analysis.sureness``; it may go on with a name in the module."""
+    paths = [path for each in PACKAGES for path in (ROOT / each).rglob("*.py")]
+    rooms = {path.parent.name for path in paths}
+    wrong = [
+        (path.name, name)
+        for path in paths
+        for name in DOTTED.findall(path.read_text(encoding="utf-8"))
+        if name.split(".")[0] in rooms and not is_module(name)
+    ]
+    assert wrong == []
+
+
+def is_module(name: str) -> bool:
+    """Whether it is a module or a package, or the part before its last dot is."""
+    path = ROOT / name.replace(".", "/")
+    return any(each.is_dir() or each.with_suffix(".py").exists() for each in (path, path.parent))
+
+
 QUOTED = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"[\w.-]*/[\w<>./-]*")
 NAME = re.compile(r"[*@]?([A-Za-z_]\w*(?:\.\w+)*)(?:\(.*\))?")
@@ -129,7 +152,7 @@ def test_what_contributing_names_is_there():
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     words = {
         word
-        for folder in ("annotations", "parser_service", "gpsr_site", "tests")
+        for folder in PACKAGES
         for path in (ROOT / folder).rglob("*.py")
         for word in re.findall(r"\w+", path.read_text(encoding="utf-8"))
     }

@@ -1,4 +1,7 @@
-"""The kinds of work. A worker treats them all alike."""
+"""The kinds of work: training runs, jobs and so on. A worker treats them all alike.
+
+The kinds of jobs are in ``annotations.models.background``.
+"""
 
 from __future__ import annotations
 

@@ -12,13 +12,16 @@ from annotations.language.texts import Refusal
 from annotations.models import Campaign
 from annotations.models.campaigns import ContributorKind
 
-# What may change while people contribute. Prompts and the size of a task stay: they are the same for everybody.
-CHANGEABLE = (
-    *("introduction", "examples", "consent", "thanks", "ends_at", "most_submissions"),
-    *("most_per_hour", "price", "currency", "completion_code", "return_url"),
-    *("run_by", "contact", "minutes", "worker_parameter", "assignment_parameter", "frame_origins"),
-    *("screening_question", "screened_out_code", "screened_out_url"),
+# What may change while people contribute, in the groups of the page. Prompts and the size of a task stay: they are the
+# same for everybody.
+TEXTS = ("introduction", "examples", "consent", "thanks")
+END = ("ends_at", "most_submissions", "most_per_hour", "price")
+ABOUT = ("currency", "minutes", "run_by", "contact")
+MARKET = (
+    *("completion_code", "return_url", "worker_parameter", "assignment_parameter"),
+    *("frame_origins", "screening_question", "screened_out_code", "screened_out_url"),
 )
+CHANGEABLE = (*TEXTS, *END, *ABOUT, *MARKET)
 
 
 class CampaignChanged(Refusal):

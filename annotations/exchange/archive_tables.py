@@ -44,6 +44,7 @@ from annotations.models import (
     World,
 )
 from annotations.models.campaigns import ContributorKind
+from annotations.rows.row_kinds import KINDS
 
 FORMAT, VERSION = "gpsr-workbench-world", 1
 NONE_OF_THEM: Mapping[str, Any] = {"pk__in": ()}
@@ -119,7 +120,7 @@ class ArchiveTable:
 
 
 # Rows stand behind those that they refer to.
-OUR_TABLES = (
+TABLES_OF_ROWS = (
     ArchiveTable("entity_classes", EntityClass, "world"),
     ArchiveTable("entities", Entity, "ontology"),
     ArchiveTable("task_categories", TaskCategory, "grammar"),
@@ -232,23 +233,22 @@ OUR_TABLES = (
     ArchiveTable("splits", Split, "world", {"follows": "splits"}, people=("created_by",)),
     ArchiveTable("examples", Example, references={"split": "splits"}, keeps_texts=True),
     ArchiveTable("problems", StoredProblem, "world"),
+)
+OUR_TABLES = (
+    *TABLES_OF_ROWS,
     ArchiveTable(
         "comments",
         Comment,
         "world",
         people=("author", "deleted_by"),
         subjects={
-            "template": "templates",
-            "production": "productions",
-            "entity": "entities",
-            "entity_class": "entity_classes",
-            "predicate": "predicates",
-            "recipe": "recipes",
-            "primitive": "primitives",
-            "paraphrase": "paraphrases",
             "form": "forms",
-            "utterance": "utterances",
-            "guidelines": "guidelines",
+            **{
+                kind.name: table.name
+                for kind in KINDS.values()
+                for table in TABLES_OF_ROWS
+                if table.model is kind.model
+            },
         },
     ),
     ArchiveTable("earlier_texts", EarlierText, references={"comment": "comments"}),

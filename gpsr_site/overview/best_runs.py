@@ -75,7 +75,7 @@ def best_runs(world: World) -> BestRuns | None:
     """Find the best run of each protocol, the best one first, on the validation part of the split that pages
     open on.
 
-    Split, source and order are those of ``serving.default_runs``. None if nothing has been scored.
+    Split, source and order are those of ``parser_service.serving.default_runs``. None if nothing has been scored.
     """
     standing = next(standings(world), None)
     if standing is None:

@@ -269,7 +269,7 @@ def calibrations_by_cluster(
 def operating_point(
     probabilities: ArrayLike, is_right: Bools | Sequence[bool], allowed: float = ALLOWED_WRONG
 ) -> OperatingPoint:
-    """Return the lowest bound from which on at most the share ``allowed`` of what is acted on is wrong.
+    """Return the lowest bound that keeps the share of wrong acts at ``allowed`` or below.
 
     It is ``LEAST_ACT`` or more. With fewer than ``FEW`` examples it is 1 − ``allowed``, which calibrated probabilities
     keep by themselves. So it is where no bound is good enough, unless more is wrong from there on than chance explains:

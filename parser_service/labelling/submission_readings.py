@@ -20,13 +20,13 @@ from parser_service.parsers.interface import Parser
 
 MOST_READ = 5_000  # submissions of one job, the oldest first
 TOGETHER = 64
-SURE = 0.95  # share of the answers that are right, from which on a parser is sure
+SURE = 0.95  # a parser is sure where so many of its answers are right
 LEAST_ANSWERS = 20  # that tell from which score on it is
 
 
 def score_of_sure_answers(run: TrainingRun) -> float | None:
-    """Return the score from which on ``SURE`` of the answers of ``run`` were right, on what people said of the
-    validation part; None where too few were."""
+    """Return the least score at which ``run`` is sure, by what people said of the validation part: of its answers
+    with that score or more, ``SURE`` were right. None where too few were."""
     answers = run.predictions.best().filter(example__part=Part.VALIDATION)
     by_people = answers.exclude(example__source__in=(Source.GENERATED, Source.MODEL))
     right, count, bound = 0, 0, None

@@ -48,8 +48,9 @@ class RunAnalysis(models.Model):
 class Probe(models.Model):
     """A text that a run is asked beyond the examples of its split.
 
-    ``kind`` is one of ``analysis.probe_texts`` or of ``analysis.edits``; an edit has ``old`` words of its ``base``
-    replaced by ``new`` ones. ``expected_form`` is canonical corpus text, empty for an open probe.
+    ``kind`` is a ``ProbeKind`` of ``parser_service.analysis.probe_texts``, or an ``EditKind`` of
+    ``parser_service.analysis.edit``: then ``old`` words of its ``base`` are replaced by ``new`` ones.
+    ``expected_form`` is canonical corpus text, empty for an open probe.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="probes")

@@ -77,7 +77,7 @@ class AnswererEvaluation(models.Model):
     ``run`` is that of the learned part, None where none was asked. ``correct`` counts exact matches, ``same_plan``
     those with the plan that was meant, whatever is decided. ``acted``, ``confirmed``, ``asked`` and ``refused`` sum to
     ``count``; ``wrong_acts`` and ``confirmed_right`` are among them. ``intervals``: figure → the ends of its 95 %
-    interval, fractions of 1 (``results.answerer_figures.FIGURES``).
+    interval, fractions of 1 (``parser_service.results.answerer_figures.FIGURES``).
 
     ``calibration`` has the weights, how many utterances of people they were fitted to, which run was the last part and
     how many of them it answered, the operating point, and the share of wrong acts that was allowed. ``answers`` are

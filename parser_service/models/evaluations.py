@@ -35,8 +35,8 @@ class Evaluation(models.Model):
     """Exact match of one run on one of ``TEST_SOURCES`` of one part.
 
     Fractions of 1; the interval at 95 % is that of a bootstrap of clusters, which ``outcomes`` counts
-    (``analysis.outcomes``). ``same_plan`` is None where plans were not compared. Of a split by form, ``known`` is a
-    part too: pairs held out of the training part, whose forms stay there.
+    (``parser_service.analysis.outcomes``). ``same_plan`` is None where plans were not compared. A split by form has
+    the part ``known`` too: pairs held out of the training part, whose forms stay there.
     """
 
     run = models.ForeignKey(TrainingRun, on_delete=models.CASCADE, related_name="evaluations")

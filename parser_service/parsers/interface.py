@@ -213,8 +213,8 @@ class Parser(ABC):
         this one stays unchanged.
 
         What calibrates must not be scored, so the validation part is scored in folds, each by the
-        parser calibrated on the others (``runs.training.cross_fitting``). It is this parser where nothing is
-        calibrated after training.
+        parser calibrated on the others (``parser_service.runs.cross_fitting``). It is this parser where nothing
+        is calibrated after training.
         """
         return self
 

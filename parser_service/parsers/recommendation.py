@@ -18,7 +18,7 @@ from parser_service.parsers.registry_entry import Expectation
 
 ENOUGH_PAIRS = 100  # to train more than the nearest neighbour
 MANY_PARAPHRASES = 200  # "some hundred": from here on they teach more than glosses do
-MANY_NEW_FORMS = 1 / 3  # share of validation forms from which on a parser has to write new ones
+MANY_NEW_FORMS = 1 / 3  # of the validation forms: a parser has to write new ones itself
 LEAST_RIGHT = 1 / 2  # below that a parser is wrong more often than right: a question is better
 
 

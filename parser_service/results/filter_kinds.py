@@ -24,7 +24,7 @@ from parser_service.results.slot_confusions import SLOTS
 
 LARGEST = 10**6
 LONGEST_TEXT = 200
-NO_FORM = "not a form"  # the head predicate of an answer that is none, as ``analysis.answer_forms`` calls it
+NO_FORM = "not a form"  # the head predicate of an answer that is none, as ``parser_service.analysis`` says
 NO_CATEGORY = "none"
 MOST_LAMBDAS = 3  # before the head predicate of an answer
 Given = Mapping[str, Any]

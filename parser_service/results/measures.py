@@ -39,7 +39,7 @@ class Measure(StrEnum):
 
     @property
     def outcomes(self) -> tuple[str, str]:
-        """What right and wrong predictions are called (``models.predictions.OUTCOMES``). Raises KeyError likewise."""
+        """What right and wrong predictions are called (``OUTCOMES``). Raises KeyError likewise."""
         return OF_EXAMPLES[self][1:]
 
 

@@ -86,7 +86,7 @@ def choose_runs(world: World, query: QueryDict, part: str) -> RunChoice:
     """Return the runs that ``query`` names by ``run``, in its order, as far as they can be compared on ``part``.
 
     They have to be of the split of the first one, and to have answers there. Without any, the split is the one that
-    ``split`` names, or the one that a page opens on (``serving.default_runs.opening_split``).
+    ``split`` names, or the one that a page opens on (``parser_service.serving.default_runs``).
     """
     keys = named_keys(query)
     scored = Evaluation.objects.filter(run__world=world, part=part).order_by()

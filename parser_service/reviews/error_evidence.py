@@ -1,4 +1,4 @@
-"""What is known of the errors of a run beside the two forms, as ``analysis.categories`` takes it."""
+"""Gathers what is known of the errors of a run beside the two forms."""
 
 from __future__ import annotations
 

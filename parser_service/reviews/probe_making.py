@@ -1,4 +1,4 @@
-"""Make the probes of a run, once: texts of ``analysis.probe_texts``, edits of utterances, and removals of words."""
+"""Make the probes of a run, once: the texts of ``probe_texts``, edits of utterances, and removals of words."""
 
 from __future__ import annotations
 

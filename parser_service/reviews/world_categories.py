@@ -19,8 +19,8 @@ LONGEST_CODE = 40
 def ensure_categories(world: World) -> dict[str, ErrorCategory]:
     """Return the error categories of ``world`` by code, in their order.
 
-    A world without any gets those of ``analysis.categories``. Categories that an admin has deleted do not
-    come back while there are others.
+    A world without any gets those of ``parser_service.analysis.error_categories``. Categories that an
+    admin has deleted do not come back while there are others.
     """
     rows = world.error_categories.select_related("slice")
     found = {row.code: row for row in rows}

@@ -3,7 +3,7 @@ one, then a question or UNKNOWN.
 
 An utterance that the oracle understands as it is written needs no other part. Where the oracle is silent, hears
 something else than what is written, or reads it in several ways, the learned part is asked too. Every answer gets a
-probability, and from that a decision (``analysis.sureness``).
+probability, and from that a decision (``parser_service.analysis.sureness``).
 """
 
 from __future__ import annotations

@@ -42,9 +42,9 @@ _JSON = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 @dataclass(frozen=True, slots=True)
 class ParsedCandidate:
     """One candidate. ``grounded`` names the entities of the utterance, certain and likely ones, and
-    ``warnings`` say what stays open; ``open_slots`` ask for it (``grounding.open_slots_as_json``). ``plan``
-    is what a robot does (``plans.Plan.as_json``), ``task_plan`` the same in its own primitives
-    (``recipes.TaskPlan.as_json``), and ``spoken`` says that in a sentence. Where the parser wrote no well-formed
+    ``warnings`` say what stays open; ``open_slots`` ask for it (``open_slots_as_json``). ``plan``
+    is what a robot does (``Plan.as_json``), ``task_plan`` the same in its own primitives
+    (``TaskPlan.as_json``), and ``spoken`` says that in a sentence. Where the parser wrote no well-formed
     form there is nothing but ``form`` and ``score``. ``values`` are those of ``Candidate``."""
 
     form: str

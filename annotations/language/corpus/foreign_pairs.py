@@ -30,7 +30,7 @@ def foreign_part(name: str) -> str:
 
 
 def read_foreign_pairs(data: bytes, source: str) -> RecordFile[WrittenPair]:
-    """Read the pairs of a file whose forms ``forms.read_foreign_form`` can read. Nothing is raised.
+    """Read the pairs of a file whose forms ``read_foreign_form`` can read. Nothing is raised.
 
     Blank lines and comments are left out. ``written_form`` is the canonical text of the form.
 

@@ -13,7 +13,7 @@ from annotations.language.corpus.distances import distance
 from annotations.language.corpus.rewrite_checks import Named, lost_entities
 from annotations.language.texts import COURTESY_WORDS, folded_words
 
-ALIKE = 0.9  # normalised Levenshtein similarity from which on two texts count as the same
+ALIKE = 0.9  # normalised Levenshtein similarity at which two texts count as the same
 LEAST_SECONDS = 2.0  # to read a prompt and to write anything
 MOST_EDITS_A_SECOND = 12.0  # 144 words a minute: few type as fast
 MOST_UNKNOWN = 0.4  # share of the letters that stand in words which nobody knows

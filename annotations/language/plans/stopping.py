@@ -18,7 +18,7 @@ from annotations.language.world import Ontology
 
 UNKNOWN_WORD, UNKNOWN_NAME = "unknown_word", "unknown_name"
 MOST_NAMED = 3  # unknown words that are said; more say nothing new
-LEAST_ALIKE = 0.2  # share of what the words of two commands tell, from which one is near the other
+LEAST_ALIKE = 0.2  # share of what the words of two commands tell that makes one near the other
 MOST_ALIKE = 0.6  # share of the words that two of the commands that are offered have in common
 MOST_COMPARED = 50
 _SPELT_ALIKE = 0.75

@@ -58,7 +58,7 @@ NOTHING: Mapping[str, Predicate] = {}
 _REWORDINGS = 2  # of each form
 _FEWEST = 3  # commands with a word, before it names anything
 _MOST_MEANINGS = 3  # predicates of which a word names one
-_MOST_COMMON = 0.75  # share of all commands with a predicate, from which on no word names it
+_MOST_COMMON = 0.75  # a predicate that so many of all commands have is named by no word
 # Log odds below which what a language never says tells no more: people say it otherwise.
 _LEAST = {"cue": -5.0, "near": -2.0, "action": -2.0}
 _MOST_BY_ORDER = 1.5  # log odds: people put parts of a command in any order

@@ -151,7 +151,7 @@ def mark_leaves(leaves: Leaves, scope: int, place: int) -> Leaves:
 def take_marks_off(leaves: Leaves, form: Form, scope: int) -> tuple[Leaves, Form]:
     """Take the numbers of ``mark_leaves`` away where the order of the wildcards says the same.
 
-    Wildcards of one name that have no number are those of the form in its order (``grounding.ground``).
+    Wildcards of one name that have no number are those of the form in its order (``ground``).
     """
     in_command = [each for each in leaves if isinstance(each, Wildcard) and each.entity_class]
     in_form: list[Wildcard] = []

@@ -1,9 +1,10 @@
 """Number the derivations of templates: count them without enumeration, and go from a number to a command and form.
 
 Nonterminals that a form mentions become the same wherever they stand, so each of them is expanded once: the
-pattern is counted with them as they are, apart for each set of them that a derivation has (``grammar.ranking``), and
-then what each becomes is counted, those above before those below. A nonterminal with lines becomes a derivation
-of one of its lines. So no number stands for a derivation that synchronous expansion would discard.
+pattern is counted with them as they are, apart for each set of them that a derivation has
+(``annotations.language.grammar.ranking``). Then what each becomes is counted, those above before those below. A
+nonterminal with lines becomes a derivation of one of its lines. So no number stands for a derivation that
+synchronous expansion would discard.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ from annotations.language.world.signatures import (
     signature_of,
 )
 
-ALIKE = 0.6  # the share of common letters from which on one name is offered for another
+ALIKE = 0.6  # the least share of common letters with which one name is offered for another
 
 
 class PredicateKind(StrEnum):

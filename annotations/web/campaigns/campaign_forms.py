@@ -10,7 +10,7 @@ from django import forms
 from django.utils import timezone
 
 from annotations.campaigns.addresses import BadAddress, origins_in, require_public_address
-from annotations.campaigns.changing import CHANGEABLE, has_consents
+from annotations.campaigns.changing import ABOUT, CHANGEABLE, END, MARKET, TEXTS, has_consents
 from annotations.campaigns.launching import PromptChoice
 from annotations.language.texts import ENCODINGS
 from annotations.models import Campaign, World
@@ -191,16 +191,7 @@ class CampaignForm(forms.Form):
     )
     TASK = ("task_size", "free_commands", "target_per_form")
     WHAT = ("balance", "prompts_per_form", "wording", "taboo_words", "check_every", "seed")
-    END = (
-        *("ends_at", "most_submissions", "most_per_hour", "price", "currency"),
-        *("minutes", "run_by", "contact"),
-    )
-    MARKET = (
-        *("completion_code", "return_url", "worker_parameter", "assignment_parameter"),
-        *("frame_origins", "screening_question", "screened_out_code", "screened_out_url"),
-    )
     MAY = ("allows_model_help", "allows_retake")
-    TEXTS = ("introduction", "examples", "consent", "thanks")
 
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
@@ -261,11 +252,11 @@ class CampaignForm(forms.Form):
 
     @property
     def end(self) -> list[forms.BoundField]:
-        return self.group(self.END)
+        return self.group((*END, *ABOUT))
 
     @property
     def market(self) -> list[forms.BoundField]:
-        return self.group(self.MARKET)
+        return self.group(MARKET)
 
     @property
     def may(self) -> list[forms.BoundField]:
@@ -273,7 +264,7 @@ class CampaignForm(forms.Form):
 
     @property
     def texts(self) -> list[forms.BoundField]:
-        return self.group(self.TEXTS)
+        return self.group(TEXTS)
 
 
 def public_address(address: str) -> str:

@@ -15,7 +15,14 @@ from rest_framework.decorators import action
 from rest_framework.response import Response
 
 from annotations.campaigns.campaign_files import MOST_TASKS, accepted_triples, task_file
-from annotations.campaigns.changing import change_campaign
+from annotations.campaigns.changing import (
+    ABOUT,
+    CHANGEABLE,
+    END,
+    MARKET,
+    TEXTS,
+    change_campaign,
+)
 from annotations.campaigns.closing import close, forget, renew_link, reopen, revoke_link
 from annotations.campaigns.crowd_jobs import start_results_import
 from annotations.campaigns.launching_job import start_launch
@@ -71,12 +78,8 @@ class CampaignSerializer(serializers.ModelSerializer[Campaign]):
         model = Campaign
         fields = [
             *("id", "name", "link", "is_over", "wording", "balance", "task_size", "free_commands"),
-            *("target_per_form", "taboo_words", "check_every", "allows_model_help"),
-            *("allows_retake", "price", "currency", "completion_code", "return_url", "ends_at"),
-            *("run_by", "contact", "minutes", "worker_parameter", "assignment_parameter"),
-            *("frame_origins", "screening_question", "screened_out_code", "screened_out_url"),
-            *("most_submissions", "most_per_hour", "seed", "introduction", "examples"),
-            *("consent", "thanks", "people", "finished", "answers", "created_by"),
+            *("target_per_form", "taboo_words", "check_every", "seed", *CampaignForm.MAY),
+            *(*CHANGEABLE, "people", "finished", "answers", "created_by"),
             *("created_at", "closed_at", "grace_ends_at", "version"),
         ]
 
@@ -89,7 +92,7 @@ class OfMarket(FormFields):
 
     class Meta:
         form = CampaignForm
-        fields = ("currency", "run_by", "contact", "minutes", *CampaignForm.MARKET)
+        fields = (*ABOUT, *MARKET)
 
 
 class NewCampaign(OfMarket):
@@ -106,7 +109,8 @@ class NewCampaign(OfMarket):
         form = CampaignForm
         fields = (
             *("name", *CampaignForm.TASK, *CampaignForm.WHAT, *CampaignForm.MAY),
-            *("price", "ends_at", "most_submissions", "most_per_hour", *CampaignForm.TEXTS),
+            *END,
+            *TEXTS,
         )
         begins = True
 
@@ -116,7 +120,7 @@ class CampaignChange(OfMarket):
 
     class Meta:
         form = CampaignForm
-        fields = ("price", "ends_at", "most_submissions", "most_per_hour", *CampaignForm.TEXTS)
+        fields = (*END, *TEXTS)
 
 
 class TaskQuery(serializers.Serializer[Any]):

@@ -52,7 +52,7 @@ class SharesForm(forms.Form):
 
 
 class SettleForm(forms.Form):
-    """One of two labels, or another answer; ``decision`` is what ``queueing.answer`` takes."""
+    """One of two labels, or another answer; ``decision`` is what ``annotations.labelling.item_answers`` takes."""
 
     UNKNOWN, OTHER = "unknown", "other"
 

@@ -15,13 +15,13 @@ from rest_framework.response import Response
 
 from annotations.background.requesting import refusal_in
 from annotations.exchange.generator_export import GeneratorPart
-from annotations.exchange.import_job import start_world_import
 from annotations.exchange.import_jobs import (
     start_competition_import,
     start_generator_import,
     start_pairs_import,
 )
 from annotations.exchange.pair_files import Notation
+from annotations.exchange.world_import_job import start_world_import
 from annotations.generation.generating import start_generation
 from annotations.generation.language_size import language_size
 from annotations.language.templates import (

@@ -22,25 +22,6 @@ SINGULAR = {
     "predicates": "predicate",
     "paraphrases": "paraphrase",
 }
-TEMPLATES = {
-    JobKind.IMPORT_GENERATOR: "annotations/worlds/_import_result.html",
-    JobKind.IMPORT_COMPETITION: "annotations/worlds/_competition_result.html",
-    JobKind.IMPORT_PAIRS: "annotations/worlds/_pairs_result.html",
-    JobKind.IMPORT_WORLD: "annotations/worlds/_world_result.html",
-    JobKind.LOAD_WORLD: "annotations/worlds/_loading_result.html",
-    JobKind.IMPORT_RESULTS: "annotations/worlds/_results_result.html",
-    JobKind.GENERATE: "annotations/worlds/_generation_result.html",
-    JobKind.LAUNCH: "annotations/worlds/_launch_result.html",
-    JobKind.FREEZE: "annotations/worlds/_freezing_result.html",
-    JobKind.PROPOSE: "annotations/worlds/_proposals_result.html",
-    JobKind.AUDIT: "annotations/worlds/_audit_result.html",
-    JobKind.ANALYSE: "annotations/worlds/_analysis_result.html",
-    JobKind.ANSWER: "annotations/worlds/_answers_result.html",
-    JobKind.MEASURE: "annotations/worlds/_measuring_result.html",
-    JobKind.PARAPHRASE: "annotations/worlds/_paraphrase_result.html",
-    JobKind.PARSE: "annotations/worlds/_parse_result.html",
-    JobKind.DELETE_WORLD: "annotations/worlds/_deletion_result.html",
-}
 # The page of the world on which files are chosen again after a refused import.
 IMPORT_PAGES = {
     JobKind.IMPORT_GENERATOR: "import",
@@ -71,7 +52,7 @@ def shown_report(
         _link_to_rows(world, problems[:MOST_PROBLEMS])
     return {
         "report": report,
-        "report_template": TEMPLATES[JobKind(kind)],
+        "report_template": f"annotations/worlds/_{JobKind(kind)}_result.html",
         "question_template": QUESTIONS.get(JobKind(kind), REMOVAL_QUESTION),
         "problems": problems[:MOST_PROBLEMS],
         "problem_groups": group_problems(problems[:MOST_PROBLEMS]),

@@ -12,8 +12,8 @@ from django.http import HttpResponse, StreamingHttpResponse
 from django.http.response import HttpResponseBase
 from django.shortcuts import redirect, render
 
-from annotations.exchange.import_job import start_world_import
 from annotations.exchange.world_deletion import count_below, start_deletion
+from annotations.exchange.world_import_job import start_world_import
 from annotations.language.texts import LanguageError
 from annotations.models import Duty, Job, World
 from annotations.people.access import (

@@ -18,7 +18,7 @@ class Average:
     soon forgotten. The weights used are on the line from the average to the first weights, the share
     ``kept`` of the way: fine-tuned weights do better on what the training pairs do not show when they
     stay near the pretrained ones (Wortsman et al. 2022). Matrices are rounded to half precision, from
-    which single utterances are answered faster (``sentence_encoder.half_precision``).
+    which single utterances are answered faster (``half_precision``).
     """
 
     def __init__(

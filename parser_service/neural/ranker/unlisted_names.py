@@ -19,8 +19,8 @@ from parser_service.parsers.interface import Check, keep_going
 
 MOST_WORDS = 6  # of an utterance that are compared together
 MOST_SPANS = 400  # of an utterance; those of a longer one are not compared
-# Cosine from which on words mean a member. Of 39 pairs of a sentence and a class that were tried, those that mean a
-# member had 0.74 and more, the others 0.59 and less.
+# The least cosine with which words mean a member. Of 39 pairs of a sentence and a class that were tried, those that
+# mean a member had 0.74 and more, the others 0.59 and less.
 LEAST_LIKENESS = 0.65
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)?")
 

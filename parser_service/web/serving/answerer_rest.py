@@ -35,7 +35,7 @@ class AnsweringPartSerializer(serializers.Serializer[Any]):
 
 
 class OperatingPointSerializer(serializers.Serializer[Any]):
-    """From which probability on an answer is acted on, and from which on it is confirmed."""
+    """The least probability with which an answer is acted on, and with which it is confirmed."""
 
     act = serializers.FloatField()
     confirm = serializers.FloatField()

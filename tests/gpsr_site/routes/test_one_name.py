@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
+from django.urls import get_resolver
+
 from gpsr_site.pages.rail import all_entries, way_to
 from tests.gpsr_site.routes.addresses import address
-from tests.gpsr_site.routes.listing import ALL_ROUTES, API_ROUTES, ROUTES_OF_WORLDS
+from tests.gpsr_site.routes.listing import (
+    ALL_ROUTES,
+    API_ROUTES,
+    ROUTES_OF_WORLDS,
+    list_routes,
+)
 from tests.gpsr_site.routes.policy import POLICY
 from tests.gpsr_site.routes.rules import undone
 
@@ -15,6 +23,12 @@ METHODS = sorted({(rule.name, rule.method) for rule in POLICY if rule.name not i
 # The list of all worlds and what is about no kind of work have no entry in the rail of a world.
 WITHOUT_ENTRY = {"search", "comment"}
 DOCUMENTS = {"documents", "document"}  # their heading is that of the text
+
+
+def test_no_two_routes_have_one_name():
+    """A link by that name would lead to either: the pages of a noun are named by its kind."""
+    names = [name for name, _ in list_routes(get_resolver().url_patterns)]
+    assert [name for name, count in Counter(names).items() if count > 1] == []
 
 
 @dataclass

@@ -12,7 +12,7 @@ from annotations.models import AuditEntry, Entity, Job, World
 def heavy(monkeypatch):
     """Everything takes long, so that it becomes a job."""
     monkeypatch.setattr("annotations.background.waking.send_wake_up", lambda queue: None)
-    for name in ("world_deletion.is_heavy_deletion", "import_job.is_heavy_world"):
+    for name in ("world_deletion.is_heavy_deletion", "world_import_job.is_heavy_world"):
         monkeypatch.setattr(f"annotations.exchange.{name}", lambda *_: True)
 
 
