@@ -14,6 +14,9 @@ round of each counts, because other work on the machine only adds. Spent beside 
 five answers with their entities, English sentences, questions and plans, JSON and HTTP; and in the loop nothing. The
 server works out once what depends on a form alone, so that the first round costs more than those after it: the
 first lines that it is ever sent are reported by themselves.
+
+The table at the end is of this process alone, without HTTP: answers in a second of processor time, of each part of the
+answerer. It has answered some paraphrases of the training part before, and is asked each of the validation part once.
 """
 
 from __future__ import annotations
@@ -44,6 +47,7 @@ LEAST_A_SECOND = 150.0
 MOST_ADDED = 0.15
 MOST_SECONDS_TO_FIRST = 10.0
 WARM_UP = 20
+WARMING = 150  # utterances before the table
 PATIENCE = 120.0
 
 
@@ -146,6 +150,33 @@ def measure(client: Any, parser: Any, utterances: Sequence[str], rounds: int) ->
     print(f"the first batches ever: {len(many) / cold.sum():.0f} a second")
 
 
+def report_per_core(run: Any, utterances: Sequence[str]) -> None:
+    """Print the table of answers a second per core: one at a time, as many together as of JSON lines, and the same
+    found but not written."""
+    from parser_service.parsers.registry import ORACLE
+    from parser_service.runs.evaluating import BEAM_WIDTH
+    from parser_service.serving.answerer import LINES_TOGETHER
+    from parser_service.serving.metrics import Metrics
+    from parser_service.serving.shelf import Shelf
+
+    known = run.split.examples.filter(part="train", source="paraphrased")
+    warming = list(known.values_list("utterance", flat=True)[:WARMING])
+    parts = (("oracle", None, ORACLE), (run.parser, run.pk, ""), ("answerer", None, ""))
+    print(f"{'answers a second per core':28}{'single':>8}{'batch':>8}{'unwritten':>11}")
+    for name, number, parser in parts:
+        rates = []
+        for together, verb in ((1, "parse"), (LINES_TOGETHER, "parse"), (1, "ask")):
+            # Each from the same start: an utterance that was answered is remembered.
+            ask = getattr(Shelf(0, Metrics()).load(WORLD, number, parser), verb)
+            for text in warming:
+                ask([text], BEAM_WIDTH)
+            began = time.process_time()
+            for at in range(0, len(utterances), together):
+                ask(utterances[at : at + together], BEAM_WIDTH)
+            rates.append(len(utterances) / (time.process_time() - began))
+        print(f"{name:28}{rates[0]:8.0f}{rates[1]:8.0f}{rates[2]:11.0f}", flush=True)
+
+
 def report_singles(served: np.ndarray, bare: np.ndarray) -> None:
     slow = np.percentile(served, 95)
     print(
@@ -199,6 +230,7 @@ def main() -> None:
                 f"first answer after {first:.1f} s   (bound {MOST_SECONDS_TO_FIRST:g} s: {is_soon})"
             )
             measure(client(), load_parser(run), utterances, given.rounds)
+        report_per_core(run, utterances)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from annotations.language.forms import Form, Unknown
 from annotations.language.grounding import (
@@ -19,6 +20,7 @@ from annotations.language.grounding import (
 from annotations.language.texts import MOST_STAND_INS, stand_in
 from annotations.language.world import ask_for
 from parser_service.parsers.interface import Candidate
+from parser_service.parsers.remembering import remembered
 from parser_service.serving.outlines import (
     Outline,
     Outlines,
@@ -40,6 +42,9 @@ from parser_service.serving.parse_answers import (
 from parser_service.serving.preparing import WorldLanguage
 
 Slots = tuple[Slot, ...]
+Written = tuple[str, int]  # the JSON of a candidate, and how many of its plans are executable
+# That no outline says. An utterance is looked at again to find its commands.
+REMEMBERED_ANSWERS = 1024
 _SIGNS = tuple((stand_in(n), stand_in(n, is_plural=True)) for n in range(MOST_STAND_INS))
 
 
@@ -76,17 +81,31 @@ class AnswerWriter:
         form = form_of(candidate.form)
         if form is None:
             answer = ParsedCandidate(candidate.form, score_of(candidate))
-            return Reading(candidate, as_json(answer.as_json()))
+            return Reading(candidate, lambda: (as_json(answer.as_json()), 0))
         slots = self._slots(candidate, heard)
-        written = self._fill(candidate, form, slots, utterance)
-        return self._write_anew(candidate, form, slots, utterance) if written is None else written
 
-    def _write_anew(
-        self, candidate: Candidate, form: Form, slots: Slots, utterance: str
-    ) -> Reading[str]:
-        given, language = fill_all(form, slots), self.language
-        answer = answer_with(candidate, given, language, language.lookup, utterance)
-        return Reading(candidate, as_json(answer.as_json()), slots, answer.executable_plans)
+        def write() -> Written:
+            filled_in = self._fill(candidate, form, slots, utterance)
+            return filled_in or self._write_anew(candidate, slots, utterance)
+
+        return Reading(candidate, write, slots)
+
+    def _write_anew(self, candidate: Candidate, slots: Slots, utterance: str) -> Written:
+        made = self._answer(candidate.form, candidate.values, slots, utterance)
+        answer = replace(made, score=score_of(candidate))
+        return as_json(answer.as_json()), answer.executable_plans
+
+    @remembered(REMEMBERED_ANSWERS)
+    def _answer(
+        self, text: str, values: tuple[str | None, ...], slots: Slots, utterance: str
+    ) -> ParsedCandidate:
+        """Return the answer with the form that ``text`` says, without its score."""
+        form, language = form_of(text), self.language
+        assert form is not None
+        given = fill_all(form, slots)
+        return answer_with(
+            Candidate(text, 0.0, values=values), given, language, language.lookup, utterance
+        )
 
     def _slots(self, candidate: Candidate, heard: UtteranceMentions) -> Slots:
         """Return the slots of a form with their entities."""
@@ -97,7 +116,7 @@ class AnswerWriter:
 
     def _fill(
         self, candidate: Candidate, form: Form, slots: Slots, utterance: str
-    ) -> Reading[str] | None:
+    ) -> Written | None:
         """Return the outline with its entities; None where it would say something else."""
         if isinstance(form, Unknown):
             return None  # the plan asks about this utterance
@@ -116,7 +135,8 @@ class AnswerWriter:
         if len(entities) < len(asked):
             return None
         classes = tuple(entity_class for entity_class, _ in entities)
-        outline = self._outlines.answer(candidate.form, paths, classes)
+        put_in_classes = tuple(each.entity_class for each in texts)
+        outline = self._outlines.answer(candidate.form, paths, put_in_classes, classes)
         if outline is None or outline.is_right is False:
             return None
         own, executable_plans = self._own_values(outline, candidate, form, slots, paths, texts)
@@ -129,9 +149,9 @@ class AnswerWriter:
             }
             | own
         )
-        written = Reading(candidate, filled_in, slots, executable_plans)
+        written = filled_in, executable_plans
         if outline.is_right is None:
-            outline.is_right = written == self._write_anew(candidate, form, slots, utterance)
+            outline.is_right = written == self._write_anew(candidate, slots, utterance)
         return written if outline.is_right else None
 
     def _own_values(

@@ -58,6 +58,7 @@ class Outline:
 class StandIn:
     """What is put in place of a sign, and of that for the plural; each also as it stands in JSON."""
 
+    entity_class: str
     text: str
     plural: str
     in_json: str
@@ -101,11 +102,11 @@ class Outlines:
     @remembered(REMEMBERED)
     def text(self, text: str) -> StandIn | None:
         """Return what is put in for a text; one of two classes may be said in another way than others of its slot."""
-        is_of_one_class = text in self.language.ontology.class_of_text
-        if not (is_of_one_class and can_stand_in(text, self._of_patterns)):
+        entity_class = self.language.ontology.class_of_text.get(text)
+        if entity_class is None or not can_stand_in(text, self._of_patterns):
             return None
         many = plural(text)
-        return StandIn(text, many, as_json(text)[1:-1], as_json(many)[1:-1])
+        return StandIn(entity_class, text, many, as_json(text)[1:-1], as_json(many)[1:-1])
 
     @remembered(REMEMBERED)
     def entity(self, text: str, predicate: str, place: int) -> tuple[str, str] | None:
@@ -121,16 +122,19 @@ class Outlines:
         """Return what the plan of a form asks for, whatever entities fill it."""
         if len(paths) > MOST_STAND_INS or STAND_IN.search(form):
             return None
-        return tuple(self._make(form, paths, {})[1])
+        return tuple(self._make(form, paths, (), {})[1])
 
     @remembered(REMEMBERED)
-    def answer(self, form: str, paths: Paths, classes: tuple[str, ...]) -> Outline | None:
-        """Return the outline of an answer. ``classes`` are those of what was ``asked`` for."""
+    def answer(
+        self, form: str, paths: Paths, put_in: tuple[str, ...], classes: tuple[str, ...]
+    ) -> Outline | None:
+        """Return the outline of an answer. ``put_in`` are the classes of the texts at ``paths``, since things are in a
+        room and at a location; ``classes`` are those of what was ``asked`` for."""
         # What stands for something said before depends on what is put in there.
         if any(isinstance(each, Reference) for each in walk(_read(form))):
             return None
         asked = self.asked(form, paths) or ()
-        answer, _ = self._make(form, paths, dict(zip(asked, classes, strict=True)))
+        answer, _ = self._make(form, paths, put_in, dict(zip(asked, classes, strict=True)))
         own = {name: _await(name) for name in OWN}
         text = as_json(answer | own)
         return Outline(text, answer["plan"]) if _is_sound(text, paths) else None
@@ -164,10 +168,15 @@ class Outlines:
         return Outline(text) if _is_sound(text, paths) else None
 
     def _make(
-        self, form: str, paths: Paths, classes: Mapping[AskedEntity, str]
+        self,
+        form: str,
+        paths: Paths,
+        put_in: tuple[str, ...],
+        classes: Mapping[AskedEntity, str],
     ) -> tuple[dict[str, Any], Mapping[AskedEntity, str]]:
         """Return the answer with signs, and what its plan asks for with the names of these places."""
-        lookup = _AwaitingLookup(self.language.lookup, classes)
+        class_of_sign = {stand_in(number): each for number, each in enumerate(put_in)}
+        lookup = _AwaitingLookup(self.language.lookup, classes, class_of_sign)
         given = Deanonymized(_with_signs(form, paths), ())
         answer = answer_with(Candidate(form, 0.0), given, self.language, lookup)
         return answer.as_json(), lookup.names
@@ -176,10 +185,12 @@ class Outlines:
 class _AwaitingLookup(Lookup):
     """Gives a place for the entity of a sign. ``names`` are those of the places, in the order of asking."""
 
-    def __init__(self, lookup: Lookup, classes: Mapping[AskedEntity, str]) -> None:
+    def __init__(
+        self, lookup: Lookup, classes: Mapping[AskedEntity, str], class_of_sign: Mapping[str, str]
+    ) -> None:
         self._lookup = lookup
         self.classes = lookup.classes
-        self.class_of_text = lookup.class_of_text
+        self.class_of_text = {**lookup.class_of_text, **class_of_sign}
         self._class_of = classes
         self.names: dict[AskedEntity, str] = {}
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, partial
 from math import exp, inf
 from typing import Any, Generic, TypeVar
 
@@ -140,18 +140,31 @@ def read_answers(
     return ParsedUtterance(heard, text, answers, warnings, is_cut_in(candidates))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Reading(Generic[T]):
     """One candidate with what it is answered with, and what decides its place among those that are equally good.
 
-    ``slots`` are those of the form with their entities, None for a text that is no form. ``executable_plans`` counts
-    which of the two plans, ``plan`` and ``task_plan``, a robot can carry out without asking anybody.
+    ``write`` returns the answer and its ``executable_plans``. It is called when somebody first asks for either: most
+    readings only decide which one is answered. ``slots`` are those of the form with their entities, None for a text
+    that is no form.
     """
 
     candidate: Candidate
-    answer: T
+    write: Callable[[], tuple[T, int]] = field(compare=False)
     slots: Sequence[Slot] | None = None
-    executable_plans: int = 0
+
+    @property
+    def answer(self) -> T:
+        return self._written[0]
+
+    @property
+    def executable_plans(self) -> int:
+        """How many of the two plans, ``plan`` and ``task_plan``, a robot can carry out without asking anybody."""
+        return self._written[1]
+
+    @cached_property
+    def _written(self) -> tuple[T, int]:
+        return self.write()
 
     def misfit(self, heard: Anonymized) -> tuple[int, float, int, int]:
         """Return how badly it fits the utterance: how many of its plans cannot be carried out, how many slots have no
@@ -179,7 +192,8 @@ def best_first(
     """
     ordered: list[Reading[T]] = []
     for group in _about_equal(readings, score_kind):
-        ordered += sorted(group, key=lambda each: each.misfit(heard))
+        # One alone is not written to be put in order.
+        ordered += sorted(group, key=lambda each: each.misfit(heard)) if group[1:] else group
     return ordered
 
 
@@ -218,10 +232,15 @@ def _read(
     """Return one candidate with the entities that were heard."""
     form = form_of(candidate.form)
     if form is None:
-        return Reading(candidate, ParsedCandidate(candidate.form, score_of(candidate)))
+        answer = ParsedCandidate(candidate.form, score_of(candidate))
+        return Reading(candidate, lambda: (answer, 0))
     given = deanonymize(form, heard, language.ontology, language.evidence, candidate.values)
-    answer = answer_with(candidate, given, language, language.lookup, heard.original)
-    return Reading(candidate, answer, given.slots, answer.executable_plans)
+
+    def write() -> tuple[ParsedCandidate, int]:
+        answer = answer_with(candidate, given, language, language.lookup, heard.original)
+        return answer, answer.executable_plans
+
+    return Reading(candidate, write, given.slots)
 
 
 def answer_with(
@@ -237,16 +256,19 @@ def answer_with(
         lookup: finds the entities of the plan.
         utterance: what was said; the plan tells where it has the words that name nothing.
     """
-    plan = make_plan(
+    make = partial(
+        make_plan,
         given.form,
         language.ontology,
         language.predicates,
-        language.action_names,
         slots=given.slots,
         lookup=lookup,
         utterance=utterance,
     )
-    task_plan = task_plan_of(given.form, language, given.slots, utterance, lookup)
+    plan = make()
+    task_plan = apply_recipes(plan, language.recipes, language.usual)
+    if not language.action_names.keys().isdisjoint(each.predicate for each in plan.steps):
+        plan = make(action_names=language.action_names)
     return ParsedCandidate(
         form=candidate.form,
         score=score_of(candidate),
@@ -258,7 +280,7 @@ def answer_with(
             given.form,
             language.predicates,
             language.ontology.classes,
-            language.ontology.class_of_text,
+            lookup.class_of_text,
         ),
         open_slots=tuple(questions_of(given, language)),
         warnings=warnings_about(given, language.ontology),

@@ -163,3 +163,29 @@ def test_published_forms_with_the_entities_of_other_utterances() -> None:
         compare(writer, utterance, [Candidate(forms[number + step], -step) for step in (0, 1, 40)])
     outlines = writer._outlines.answer.cache_info()
     assert outlines.hits > 3 * outlines.misses
+
+
+def test_an_outline_says_in_a_room_and_at_a_location(monkeypatch: pytest.MonkeyPatch) -> None:
+    writer = AnswerWriter(language_of(HOME))
+    room, location = (HOME.of_class(name)[-1].text for name in ("room", "location"))
+    for entity_class, text in (("room", room), ("location", location)):
+        form = f'(find (λ$1:e (person $1) (at $1 "<{entity_class}>")))'
+        candidates = [Candidate(to_corpus(read_form(form)), -1.5)]
+        compare(writer, f"find somebody at the {text}", candidates)
+        with monkeypatch.context() as patched:
+            patched.setattr(AnswerWriter, "_write_anew", None)  # the outline says it alone
+            compare(writer, f"find somebody near the {text}", candidates)
+
+
+def test_what_nobody_asks_for_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    writer = AnswerWriter(language_of(HOME))
+    heard = writer.language.anonymizer.anonymize("go to the shelf")
+    candidates = [Candidate(form, score) for form, score in (("(wait)", 0.9), ("UNKNOWN", 0.1))]
+    written: list[str] = []
+    monkeypatch.setattr(
+        AnswerWriter, "_fill", lambda self, candidate, *_: written.append(candidate.form)
+    )
+    first, _ = writer.readings(heard, candidates, "probability")
+    assert not written
+    assert first.answer and first.executable_plans in (0, 1, 2)
+    assert written == ["(wait)"]
