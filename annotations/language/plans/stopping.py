@@ -134,14 +134,15 @@ class NearCommands:
         self._commands = list(dict.fromkeys(commands))
         self._with_word: defaultdict[str, list[int]] = defaultdict(list)
         for number, command in enumerate(self._commands):
-            for word in set(_words(command)):
+            for word in dict.fromkeys(_words(command)):
                 self._with_word[word].append(number)
         self._weights = {
             word: math.log(1 + len(self._commands) / len(mine))
             for word, mine in self._with_word.items()
         }
         self._total = [
-            sum(self._weights[word] for word in set(_words(command))) for command in self._commands
+            sum(self._weights[word] for word in dict.fromkeys(_words(command)))
+            for command in self._commands
         ]
 
     def nearest(self, heard: Anonymized, most: int = 3) -> tuple[str, ...]:
@@ -149,7 +150,8 @@ class NearCommands:
 
         A word that no command has counts as the one that is spelt alike. Linear in the words and the commands.
         """
-        words = {self._read(word) for word in set(_words(heard.command))}
+        # In the order in which they were said: sums of weights, and so the answer, are the same in each process.
+        words = dict.fromkeys(map(self._read, _words(heard.command)))
         shared: defaultdict[int, float] = defaultdict(float)
         for word in words:
             for number in self._with_word.get(word, ()):

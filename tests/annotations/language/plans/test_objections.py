@@ -114,3 +114,9 @@ def test_near_commands_share_telling_words():
     assert near.nearest(ANONYMIZER.anonymize("go kitchen"), 1) == ("go to the <room>",)
     assert near.nearest(ANONYMIZER.anonymize("asdf qwer")) == ()
     assert NearCommands([]).nearest(ANONYMIZER.anonymize("go")) == ()
+
+
+def test_of_two_words_that_are_spelt_alike_the_first_counts_in_every_process():
+    near = NearCommands(["catch and match the <object>", "match the <object>"])
+    chosen = near.nearest(ANONYMIZER.anonymize("batch cola"), 1)
+    assert chosen == ("catch and match the <object>",)
