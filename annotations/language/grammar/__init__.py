@@ -35,4 +35,12 @@ from annotations.language.grammar.ranking import (
     RankedSequence,
     Ranking,
 )
-from annotations.language.grammar.recognizer import Alternative, Chart, Recognizer, RuleBook, Run
+from annotations.language.grammar.recognizer import (
+    Alternative,
+    Chart,
+    Recognizer,
+    RuleBook,
+    Run,
+    WordChart,
+    recognizer_of,
+)
