@@ -40,9 +40,9 @@ class Site:
         self.environment.pop("DATABASE_URL", None)
         if database:
             self.environment["DATABASE_URL"] = database
-        made = self.run("migrate", "-v0")
-        if made.status:
-            sys.exit(made.errors)
+        self.migrated = self.run("migrate", "-v0")
+        if self.migrated.status:
+            sys.exit(self.migrated.errors)
 
     def run(self, *arguments: str) -> Spent:
         """Run ``manage.py`` in a process of its own. This process has to stay small: the peak that the

@@ -345,6 +345,7 @@ if CELERY_BROKER_URL.startswith("filesystem:"):
         "data_folder_out": str(VAR_DIR / "broker" / "messages"),
         "control_folder": str(VAR_DIR / "broker" / "control"),
     }
+QUEUE_APP = "gpsr_site.celery.app"
 # Sites that share a broker keep apart by it.
 BROKER_QUEUE_PREFIX = env.str("GPSR_QUEUE_PREFIX", default="gpsr-")
 # Divides every period of the background work (leases, timers): tests run at tempo 10.

@@ -5,6 +5,7 @@ import os
 from django.core.wsgi import get_wsgi_application
 from django.urls import get_resolver
 
+from gpsr_site import celery as celery  # now, not while the first message waits
 from gpsr_site.web.database import bound_statements
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")

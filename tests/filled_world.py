@@ -9,6 +9,7 @@ from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.collecting import collect
 from annotations.labelling.enqueuing import refill, set_share
 from annotations.labelling.item_answers import answer
+from annotations.language.corpus import Part
 from annotations.language.plans import Offer
 from annotations.models import (
     AuditEntry,
@@ -25,7 +26,6 @@ from annotations.models import (
     World,
 )
 from annotations.models.background import Status
-from annotations.models.splits import Part
 from annotations.models.worlds import Role
 from parser_service.models import Promotion, PromotionState, Slice, TrainingRun
 from parser_service.reviews.analysis_job import analyse

@@ -27,6 +27,7 @@ from annotations.background.recovery import MOST_RESUMES, hand_back, requeue_exp
 from annotations.background.waking import (
     TASK,
     message_queue,
+    queue_app,
     send_wake_up,
     wake,
     wake_for_forgotten,

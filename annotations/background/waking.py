@@ -6,21 +6,30 @@ import logging
 from collections.abc import Sequence
 from datetime import timedelta
 from functools import partial
+from typing import TYPE_CHECKING
 
-from celery import current_app
 from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
-from kombu.exceptions import KombuError, OperationalError
+from django.utils.module_loading import import_string
 
 from annotations.background.kinds import kinds
 from annotations.models.background import BackgroundWork
+
+if TYPE_CHECKING:
+    from celery import Celery
 
 logger = logging.getLogger(__name__)
 
 TASK = "annotations.work_next"
 WAKE_AFTER = timedelta(seconds=15 / settings.WORK_TEMPO)
 MESSAGE_LIVES_SECONDS = 60
+
+
+def queue_app() -> Celery:
+    """Return what sends messages and takes them. It is loaded by whoever does: most commands do neither."""
+    app: Celery = import_string(settings.QUEUE_APP)
+    return app
 
 
 def message_queue(queue: str) -> str:
@@ -36,7 +45,7 @@ def wake(work: BackgroundWork) -> None:
 def send_wake_up(queue: str) -> None:
     """Send one message. Where the broker is away, log a line."""
     try:
-        current_app.send_task(
+        queue_app().send_task(
             TASK,
             args=[queue],
             queue=message_queue(queue),
@@ -50,7 +59,9 @@ def send_wake_up(queue: str) -> None:
 
 def _broker_errors() -> tuple[type[Exception], ...]:
     """Return what the library of this broker raises: for a virtual host that is gone, for one."""
-    connection = current_app.connection_for_write()
+    from kombu.exceptions import KombuError, OperationalError
+
+    connection = queue_app().connection_for_write()
     of_library = (*connection.connection_errors, *connection.channel_errors)
     return (KombuError, OperationalError, OSError, *of_library)
 

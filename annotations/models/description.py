@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import asdict, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from django.core.validators import MaxValueValidator
 from django.db import models
@@ -20,17 +20,13 @@ from annotations.language.forms import (
     split_head,
 )
 from annotations.language.forms import EntityClass as ClassValue
-from annotations.language.plans import (
-    MAX_ROW,
-    ActionPattern,
-    RecipeBook,
-    read_primitive,
-    read_recipe,
-)
-from annotations.language.texts import MAX_INDEXED_BYTES, MAX_PREDICATE, LanguageError
+from annotations.language.texts import MAX_INDEXED_BYTES, MAX_PREDICATE, MAX_ROW, LanguageError
 from annotations.models.editing import Editable
 from annotations.models.people import User
 from annotations.models.worlds import World
+
+if TYPE_CHECKING:
+    from annotations.language.plans import ActionPattern, RecipeBook
 
 MOST_CHARACTERS_OF_GUIDELINES = 20_000
 
@@ -146,6 +142,8 @@ class Primitive(BookRow):
     @staticmethod
     def columns_of(text: str) -> dict[str, str]:
         """Return the columns that follow from a text, and the text in its one spelling. Raises LanguageError."""
+        from annotations.language.plans import read_primitive
+
         value = read_primitive(text)
         return {"text": str(value), "name": value.name}
 
@@ -186,6 +184,8 @@ class Recipe(BookRow):
     @staticmethod
     def columns_of(text: str) -> dict[str, str]:
         """Return the columns that follow from a text, and the text in its one spelling. Raises LanguageError."""
+        from annotations.language.plans import read_recipe
+
         value = read_recipe(text)
         left = str(_in_order(value.pattern))
         if len(left.encode()) > MAX_INDEXED_BYTES:

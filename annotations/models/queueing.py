@@ -12,7 +12,6 @@ from django.db import models
 from django.db.models import F, Q
 from django.utils import timezone
 
-from annotations.language.corpus import Reason
 from annotations.language.forms import UNKNOWN, canonical_text
 from annotations.models.corpus import (
     MOST_CHARACTERS,
@@ -43,12 +42,6 @@ class FindingStatus(models.TextChoices):
 
 
 REVIEWER = "reviewer"  # a reason that a person gives; an audit neither makes nor removes it
-REASON_LABELS = {
-    REVIEWER: "a reviewer",
-    Reason.COMMAND: "its command",
-    Reason.WORD: "a word",
-    Reason.PARSER: "a parser",
-}
 
 
 def finding_status_choices() -> list[tuple[str, str]]:
@@ -60,7 +53,14 @@ def decision_choices() -> list[tuple[str, str]]:
 
 
 def audit_reason_choices() -> list[tuple[str, str]]:
-    return [(str(reason), label) for reason, label in REASON_LABELS.items()]
+    from annotations.language.corpus import Reason
+
+    return [
+        (REVIEWER, "a reviewer"),
+        (Reason.COMMAND.value, "its command"),
+        (Reason.WORD.value, "a word"),
+        (Reason.PARSER.value, "a parser"),
+    ]
 
 
 class AuditFindingQuerySet(models.QuerySet["AuditFinding"]):
@@ -157,7 +157,8 @@ class AuditFinding(models.Model):
     def doubts(self) -> list[str]:
         """What speaks against the label, each kind of reason once, as lists show it."""
         kinds = dict.fromkeys(each.reason for each in self.reasons.all())
-        return [REASON_LABELS[kind] for kind in kinds]
+        labels = dict(audit_reason_choices())
+        return [labels[kind] for kind in kinds]
 
     @property
     def offers_form(self) -> bool:

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from django.db import models
 
-from annotations.language.corpus import Criterion, Part
 from annotations.language.forms import depth, head_predicate, read_form
-from annotations.language.templates import SampleNote
 from annotations.language.texts import LanguageError
 from annotations.models.people import User
 from annotations.models.worlds import World
@@ -18,6 +16,8 @@ HEAD_LENGTH = 80  # of the name of a predicate, as in ``LogicalForm``
 
 
 if TYPE_CHECKING:
+    from annotations.language.templates import SampleNote
+
     PlainField = models.Field[Any, Any]
     PlainIntegerField = models.PositiveIntegerField[Any, Any]
     PlainCharField = models.CharField[Any, Any]
@@ -66,10 +66,14 @@ class Source(models.TextChoices):
 
 
 def criterion_choices() -> list[tuple[str, str]]:
+    from annotations.language.corpus import Criterion
+
     return [(each.value, each.replace("_", " ").title()) for each in Criterion]
 
 
 def part_choices() -> list[tuple[str, str]]:
+    from annotations.language.corpus import Part
+
     return [(each.value, each.title()) for each in Part]
 
 
@@ -78,7 +82,7 @@ def source_choices() -> list[tuple[str, str]]:
 
 
 class SplitQuerySet(models.QuerySet["Split"]):
-    def named(self, name: str, criterion: str = Criterion.COMMAND) -> Split | None:
+    def named(self, name: str, criterion: str = "command") -> Split | None:
         """Return the split ``name``, or ``name-criterion`` where one name stands for several criteria."""
         splits = {
             split.name: split for split in self.filter(name__in=[name, f"{name}-{criterion}"])
@@ -121,6 +125,8 @@ class Split(models.Model):
     @property
     def sample_note(self) -> SampleNote | None:
         """What to say of the commands; None where they were all that the templates made."""
+        from annotations.language.templates import SampleNote
+
         return SampleNote.from_json(self.sample)
 
 

@@ -13,13 +13,12 @@ from django.core.validators import RegexValidator
 from django.db import models
 from django.utils import timezone
 
-from annotations.language.plans import default_book
-from annotations.language.templates import DEFAULT_LIMIT, EVERYTHING, SampleNote, SampleRequest
 from annotations.models.people import User, digest_of
 from annotations.models.short_texts import ShortTextField
 
 if TYPE_CHECKING:
     from annotations.language.forms import EntityClasses
+    from annotations.language.templates import SampleNote, SampleRequest
     from annotations.language.world import Predicate
 
 
@@ -134,6 +133,8 @@ class World(models.Model):
         is_new = self._state.adding
         super().save(*args, **kwargs)
         if is_new:
+            from annotations.language.plans import default_book
+
             self.entity_classes.add_defaults(self)
             self.primitives.start_book(self, default_book())
             self.recipes.start_book(self, default_book())
@@ -146,18 +147,24 @@ class World(models.Model):
     @property
     def sample_note(self) -> SampleNote | None:
         """What to say of the commands; None where they are all that the templates make."""
+        from annotations.language.templates import SampleNote
+
         note = SampleNote.from_json(self.sample)
         return None if note is None or note.is_all else note
 
     @property
     def sample_request(self) -> SampleRequest:
         """What somebody asked for when the commands were last made."""
+        from annotations.language.templates import EVERYTHING, SampleNote
+
         note = SampleNote.from_json(self.sample)
         return EVERYTHING if note is None else note.request
 
     @property
     def most_of_a_template(self) -> int | None:
         """How many commands a template may make before it is left out; None where a sample is drawn."""
+        from annotations.language.templates import DEFAULT_LIMIT
+
         return None if self.sample_request.size else DEFAULT_LIMIT
 
     @property

@@ -134,14 +134,14 @@ def make_run(split: Any, number: int) -> Any:
     from django.utils import timezone
 
     from parser_service.models import TrainingRun
-    from parser_service.parsers.registry import PARSERS
+    from parser_service.parsers.registry import parsers
 
     parser = PARSERS_OF_RUNS[number]
     return TrainingRun.objects.create(
         world=split.world,
         split=split,
         parser=parser,
-        parser_version=PARSERS[parser].version,
+        parser_version=parsers()[parser].version,
         protocol="strict",
         train_sources="gen+para",
         seed=number,

@@ -14,7 +14,7 @@ import pandas as pd
 
 from parser_service.analysis.clustered import Clustered, Parts, figures_of, interval_of
 from parser_service.analysis.comparing import is_better
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 BY_FORM = "logical_form"
 # By form, the three figures of a cell; by what else, the accuracy of the part.
@@ -76,8 +76,8 @@ def is_current(cell: dict[str, Any]) -> bool:
     version = cell.get("version")
     return (
         version is None
-        or cell["parser"] not in PARSERS
-        or version == PARSERS[cell["parser"]].version
+        or cell["parser"] not in parsers()
+        or version == parsers()[cell["parser"]].version
     )
 
 

@@ -18,7 +18,7 @@ from itertools import product
 from pathlib import Path
 
 from benchmarks.fresh_site import DATA, WORLD, Site
-from parser_service.parsers.registry import PARSERS, entry
+from parser_service.parsers.registry import entry, parsers
 
 MOST_SECONDS = 360.0
 MOST_BYTES = 2 * 1024**3
@@ -50,7 +50,7 @@ def measure(site: Site, cells: Path, parser: str, protocol: str, setting: str, b
 
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    arguments.add_argument("--parsers", default=",".join(PARSERS), metavar="A,B")
+    arguments.add_argument("--parsers", default=",".join(parsers()), metavar="A,B")
     arguments.add_argument("--train-test", default="gen-gen,para-para,gen+para-para", metavar="A,B")
     arguments.add_argument("--criteria", default="command", metavar="A,B")
     given = arguments.parse_args()

@@ -11,7 +11,7 @@ from annotations.models import Split, World
 from parser_service.models import Evaluation
 from parser_service.models.evaluations import ShownScore
 from parser_service.parsers.conditions import in_words, only_source
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.serving.default_runs import standings
 
 
@@ -36,7 +36,7 @@ class BestRun:
 
     @property
     def title(self) -> str:
-        entry = PARSERS.get(self.parser)
+        entry = parsers().get(self.parser)
         return entry.title if entry else self.parser
 
     @property

@@ -11,10 +11,10 @@ from django.db.models import Count
 from annotations.background import kinds
 from annotations.models.background import Queue, Status
 from parser_service.models import Worker
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 # Each of them needs a living worker, whether or not something waits there.
-NEEDED = frozenset({Queue.QUICK, *(Queue(entry.queue) for entry in PARSERS.values())})
+NEEDED = frozenset({Queue.QUICK, *(Queue(entry.queue) for entry in parsers().values())})
 TAKEN_BY = {Queue.CPU: "training worker", Queue.GPU: "GPU worker", Queue.QUICK: "quick worker"}
 
 

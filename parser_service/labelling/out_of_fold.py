@@ -9,13 +9,13 @@ from annotations.language.corpus import LabelledPair, ScoredForm, assign_folds, 
 from annotations.language.texts import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Check, Observer, Pair
-from parser_service.parsers.registry import PARSERS, entry, load_class
+from parser_service.parsers.registry import entry, load_class, parsers
 
 BEAM_WIDTH = 10
 # Those that learn from pairs alone, in seconds and without torch.
 AUDITORS = tuple(
     name
-    for name, each in PARSERS.items()
+    for name, each in parsers().items()
     if each.queue == "quick" and Protocol.STRICT in each.protocols
 )
 

@@ -11,7 +11,7 @@ from annotations.language.corpus import Criterion
 from annotations.language.texts import Refusal
 from parser_service.benchmarking.trials import Declared, TrialColumn
 from parser_service.parsers.conditions import PAPERS_SETTINGS, SOURCES, TRAIN_SOURCES, Protocol
-from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.parsers.registry import config_fields, parsers
 
 COLUMN_PARTS: tuple[Sequence[str], Sequence[str], Sequence[str]] = (
     [str(setting) for setting in PAPERS_SETTINGS],
@@ -127,7 +127,7 @@ def read_configurations(assignments: Sequence[str]) -> dict[str, dict[str, Any]]
     texts: dict[str, list[str]] = {}
     for assignment in assignments:
         parser, has_dot, rest = assignment.partition(".")
-        if not has_dot or parser not in PARSERS:
+        if not has_dot or parser not in parsers():
             raise Refusal(
                 f"--config {assignment!r} has to be PARSER.KEY=VALUE.", "hyperparameter_unreadable"
             )

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from django.db import models
 
-from annotations.language.corpus import KNOWN, Criterion, harmonic_mean
 from parser_service.models.runs import TrainingRun
 from parser_service.parsers.conditions import TEST_SOURCES, only_source
 
@@ -95,6 +94,8 @@ class ShownScore:
     @property
     def accuracy(self) -> float:
         """The figure, a fraction of 1."""
+        from annotations.language.corpus import harmonic_mean
+
         if self.known is None:
             return self.score.accuracy
         return harmonic_mean(self.score.accuracy, self.known.accuracy)
@@ -147,6 +148,8 @@ def shown_scores(
 ) -> dict[tuple[str, str], ShownScore]:
     """Return the scores of one run on a split by ``criterion``, by part and test source; those on known forms
     stand beside the others."""
+    from annotations.language.corpus import KNOWN, Criterion
+
     by_place = {(each.part, each.test_source): each for each in evaluations}
     is_by_form = criterion == Criterion.LOGICAL_FORM
     return {

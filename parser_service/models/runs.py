@@ -14,7 +14,7 @@ from annotations.models.background import status_choices as status_choices
 from annotations.models.short_texts import ShortTextField
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import ScoreKind
-from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.parsers.registry import config_fields, parsers
 
 # What runs that differ by their seed have in common, beside the configuration.
 SHARED_BY_SEEDS = (
@@ -138,7 +138,7 @@ class TrainingRun(BackgroundWork):
 
     def changed_hyperparameters(self) -> tuple[tuple[str, Any], ...]:
         """Return name and value of each hyperparameter that is not at the parser's default, in order."""
-        if self.parser not in PARSERS:
+        if self.parser not in parsers():
             return tuple(self.config.items())
         return tuple(
             (field.name, self.config[field.name])

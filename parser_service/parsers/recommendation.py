@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 from annotations.language.corpus import Overlap, together
 from parser_service.parsers.conditions import GENERATED, Protocol
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.parsers.registry_entry import Expectation
 
 ENOUGH_PAIRS = 100  # to train more than the nearest neighbour
@@ -124,7 +124,7 @@ MEASURED = {
 
 def expectation_of(parser: str, material: TrainingMaterial) -> Expectation | None:
     """Return what to expect of a parser with this material; None where nobody has measured it."""
-    expected = PARSERS[parser].expected if parser in PARSERS else None
+    expected = parsers()[parser].expected if parser in parsers() else None
     measured = MEASURED.get(parser)
     if expected is None or measured is None:
         return expected
@@ -178,7 +178,7 @@ def recommend(material: TrainingMaterial, lacking: Collection[str] = ()) -> Reco
 def _is_fit(parser: str, material: TrainingMaterial) -> bool:
     """Return whether a parser can answer enough of the validation part's forms, and is expected to be right on half of
     what is asked, generated or said."""
-    if material.asks_new_forms and not PARSERS[parser].writes_new_forms:
+    if material.asks_new_forms and not parsers()[parser].writes_new_forms:
         return False
     expected = expectation_of(parser, material)
     shares = (expected.generated, expected.said) if expected else ()

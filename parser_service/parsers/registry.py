@@ -1,6 +1,6 @@
 """The parsers by name: those that come with this package, and those that installed packages register.
 
-It holds paths, not classes: importing it loads neither torch nor a parser.
+It holds paths, not classes: asking it loads neither torch nor a parser.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import gc
 import logging
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import cache
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -221,31 +222,34 @@ def _attribute(dotted: str) -> Any:
     return getattr(import_module(module), name)
 
 
-PARSERS = _in_order(_registered())
+@cache
+def parsers() -> dict[str, RegistryEntry]:
+    """Return all parsers in the order of the pages. The first call asks the installed packages."""
+    return _in_order(_registered())
 
 
 def entry(name: str) -> RegistryEntry:
     """Return the entry called ``name``. Raises Refusal with the names there are."""
-    if name not in PARSERS:
+    if name not in parsers():
         raise Refusal(
-            f"No parser is called {name!r}; there are: {', '.join(PARSERS)}.", "unknown_parser"
+            f"No parser is called {name!r}; there are: {', '.join(parsers())}.", "unknown_parser"
         )
-    return PARSERS[name]
+    return parsers()[name]
 
 
 def title_of(parser: str) -> str:
     """Return what pages call a parser; its name where the registry no longer has it."""
-    return PARSERS[parser].title if parser in PARSERS else parser
+    return parsers()[parser].title if parser in parsers() else parser
 
 
 def untrained() -> list[str]:
     """Return the names of the parsers that training pairs change nothing of: they answer without a run."""
-    return [name for name, each in PARSERS.items() if not each.learns]
+    return [name for name, each in parsers().items() if not each.learns]
 
 
 def needing(needs: Needs) -> list[str]:
     """Return the names of the parsers that need this most."""
-    return [name for name, each in PARSERS.items() if each.needs is needs]
+    return [name for name, each in parsers().items() if each.needs is needs]
 
 
 def load_class(name: str) -> type[Parser]:

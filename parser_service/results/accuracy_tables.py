@@ -19,7 +19,7 @@ from annotations.models import Split, World
 from parser_service.analysis.comparing import is_better
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers.conditions import PAPERS_SETTINGS, SETTINGS, Protocol, only_source
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.results.accuracy_cells import Cell, newest_of_each_seed
 from parser_service.results.measures import Measure, count_of, is_known
 from parser_service.results.published import published_accuracy, published_criteria
@@ -223,7 +223,7 @@ def seeds_url(world: World, run: TrainingRun) -> str:
 
 def rank_of(parser: str, changes: Changes) -> tuple[int, int, str]:
     """Return a sort key: the order of the registry, defaults before changed hyperparameters."""
-    names = list(PARSERS)
+    names = list(parsers())
     place = names.index(parser) if parser in names else len(names)
     return place, len(changes), str(changes)
 

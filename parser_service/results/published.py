@@ -6,10 +6,10 @@ from django.db.models import Count
 
 from annotations.language.corpus import Criterion
 from annotations.models import Example, Split
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 # Parser → for each setting the accuracy by command and by logical form.
-PUBLISHED = {name: entry.published for name, entry in PARSERS.items() if entry.published}
+PUBLISHED = {name: entry.published for name, entry in parsers().items() if entry.published}
 # Which of a pair of figures belongs to a criterion.
 INDEX = {Criterion.COMMAND: 0, Criterion.LOGICAL_FORM: 1}
 # Training and validation pairs of the published corpus (docs/reference/formats.md, Pairs): how a

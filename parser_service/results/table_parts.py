@@ -12,7 +12,7 @@ from annotations.language.corpus import Criterion
 from annotations.models import Split
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol, in_short, in_words
-from parser_service.parsers.registry import PARSERS, title_of
+from parser_service.parsers.registry import parsers, title_of
 from parser_service.results.accuracy_cells import Cell
 from parser_service.results.measures import Measure
 
@@ -171,4 +171,4 @@ def marked(title: str, parser: str) -> str:
 
 def may_know_corpora(parser: str) -> bool:
     """Return whether a parser may have read a public corpus before anybody trained it here."""
-    return parser in PARSERS and PARSERS[parser].may_know_corpora
+    return parser in parsers() and parsers()[parser].may_know_corpora

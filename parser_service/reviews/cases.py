@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from annotations.models import Command, Example, Paraphrase, User
 from annotations.rows.occurrences import command_of_example, paraphrase_of_example
 from parser_service.models import Prediction, Review, TrainingRun
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.reviews.earlier import tags_of_example_before
 
 
@@ -31,7 +31,7 @@ class CaseAnswer:
 
     @property
     def title(self) -> str:
-        entry = PARSERS.get(self.run.parser)
+        entry = parsers().get(self.run.parser)
         return entry.title if entry else self.run.parser
 
     @property

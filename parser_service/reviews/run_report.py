@@ -9,7 +9,7 @@ from typing import Any
 from annotations.generation.split_statistics import counts_of
 from annotations.language.corpus import KNOWN, Part
 from parser_service.models import TrainingRun
-from parser_service.parsers.registry import PARSERS, title_of
+from parser_service.parsers.registry import parsers, title_of
 from parser_service.results.addresses import Addresses
 from parser_service.results.breakdown import break_down, break_down_by_slices
 from parser_service.results.compared import Compared, compare_on
@@ -93,7 +93,7 @@ class _RunReport:
         return sections
 
     def configuration(self) -> dict[str, Any]:
-        entry = PARSERS.get(self.run.parser)
+        entry = parsers().get(self.run.parser)
         return {
             "description": entry.description if entry else "",
             "changed": dict(self.run.changed_hyperparameters()),

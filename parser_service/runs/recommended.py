@@ -15,7 +15,7 @@ from annotations.models.splits import Source
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES
 from parser_service.parsers.pretrained_files import Gap, find_gaps
 from parser_service.parsers.recommendation import Recommendation, TrainingMaterial, recommend
-from parser_service.parsers.registry import PARSERS, make_config
+from parser_service.parsers.registry import make_config, parsers
 
 # What most people ask for is known forms said in another way; a split by form asks for new ones.
 USUAL_ORDER = (Criterion.COMMAND, Criterion.SOURCE_COMMAND, Criterion.LOGICAL_FORM)
@@ -96,7 +96,7 @@ def material_of(world: World, contents: SplitContents | None) -> TrainingMateria
 
 def gaps_of_parsers() -> dict[str, list[Gap]]:
     """Return what each parser lacks before it can be trained with its defaults; empty where nothing."""
-    return {name: find_gaps(make_config(name), anywhere=False) for name in PARSERS}
+    return {name: find_gaps(make_config(name), anywhere=False) for name in parsers()}
 
 
 def recommendation_for(world: World, split: Split | None = None) -> Recommendation:

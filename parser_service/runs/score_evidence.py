@@ -11,7 +11,7 @@ from parser_service.models import TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import in_words
 from parser_service.parsers.recommendation import LEAST_RIGHT, MANY_NEW_FORMS
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 SPOKEN = ("para", "said")  # test sources of what people say; the first with enough of them counts
 ENOUGH_SAID = 20  # utterances of people, to judge a run by them
@@ -57,7 +57,7 @@ def known_low(run: TrainingRun) -> float:
 
 def why_not(run: TrainingRun) -> str:
     """Say why the rule does not promote a run, whatever is promoted now; empty where nothing speaks against it."""
-    entry = PARSERS.get(run.parser)
+    entry = parsers().get(run.parser)
     if entry is None or not entry.learns:
         return "It learns nothing, so it needs no run."
     if run.train_share != 1:

@@ -9,7 +9,7 @@ from django import template
 
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.interface import TRAINING, ScoreKind
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 register = template.Library()
 
@@ -87,7 +87,7 @@ def score_kind_in_words(run: TrainingRun) -> str:
 @register.filter
 def cut_in_words(parser: str) -> str:
     """Say how much of the utterance the parser read, for an answer to its beginning alone."""
-    most = PARSERS[parser].most_subwords if parser in PARSERS else 0
+    most = parsers()[parser].most_subwords if parser in parsers() else 0
     read = f"It was read to the {most}th subword" if most else "Its beginning was read"
     return f"This utterance is longer than the parser reads. {read}; the rest had no part in the answer."
 

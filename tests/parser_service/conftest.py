@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import pytest
-from celery import current_app
 from django.conf import settings
 
-from annotations.background import message_queue
+from annotations.background import message_queue, queue_app
 from annotations.models import Split
 from annotations.models.background import Queue
 from tests.parser_service.made_up import make_split
@@ -25,7 +24,7 @@ def tidy_broker() -> Iterator[None]:
     """The broker of TEST_BROKER_URL is left without our queues."""
     yield
     if not settings.CELERY_BROKER_URL.startswith("filesystem:"):
-        with current_app.connection_for_write() as connection, connection.channel() as channel:
+        with queue_app().connection_for_write() as connection, connection.channel() as channel:
             for queue in Queue.values:
                 channel.queue_delete(message_queue(queue))
 

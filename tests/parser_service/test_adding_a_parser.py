@@ -56,7 +56,7 @@ def registered(monkeypatch):
         version=1,
         protocols=("strict",),
     )
-    monkeypatch.setitem(registry.PARSERS, "most-frequent", entry)
+    monkeypatch.setitem(registry.parsers(), "most-frequent", entry)
 
 
 def test_a_parser_that_is_registered_trains_and_is_scored(registered, world, transactional_db):

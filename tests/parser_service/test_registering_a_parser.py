@@ -75,8 +75,8 @@ def test_a_registered_parser_is_offered_and_trains(
     in_order = registry._in_order(registry._registered())
     names = list(in_order)
     assert names[names.index("knn") + 1] == "acme"
-    assert [each for each in names if each != "acme"] == list(registry.PARSERS)
-    monkeypatch.setitem(registry.PARSERS, "acme", in_order["acme"])
+    assert [each for each in names if each != "acme"] == list(registry.parsers())
+    monkeypatch.setitem(registry.parsers(), "acme", in_order["acme"])
     split = make_split(world)
     page = adam.get("/w/home/runs/new/", {"parser": "acme"}).content.decode()
     assert "Answers as Acme would." in page
@@ -126,7 +126,7 @@ def test_parsers_that_cannot_be_used_are_left_out_and_their_package_is_named(
     path = package / f"{file}.py"
     assert old in path.read_text()
     path.write_text(path.read_text().replace(old, new, 1))
-    assert registry._in_order(registry._registered()) == registry.PARSERS
+    assert registry._in_order(registry._registered()) == registry.parsers()
     [record] = caplog.records
     told = record.getMessage()
     assert told.startswith("The parsers that the package acme-tools registers as acme_parsers.")

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -131,7 +131,7 @@ def _read(text: str) -> Form:
     require_writable(text, Position())
     start = start_rule(text)
     try:
-        form: Form = _LARK.parse(text, start=start)  # type: ignore[assignment]
+        form: Form = _form_reader().parse(text, start=start)  # type: ignore[assignment]
     except UnexpectedInput as error:
         raise explain(error, text) from None
     _refuse_unbound(form, text, start)
@@ -186,12 +186,20 @@ class _Builder(Transformer[Token, Form]):
         return Nonterminal(name[1:])
 
 
-_LARK = Lark(
-    Path(__file__).with_name("logic.lark").read_text(encoding="utf-8"),
-    parser="lalr",
-    start=["expression", "reading"],
-    transformer=_Builder(),
-)
+@cache
+def _form_reader() -> Lark:
+    # Not before a form is read: it takes a tenth of a second.
+    return _reader(transformer=_Builder())
+
+
+@cache
+def _tree_reader() -> Lark:
+    return _reader(propagate_positions=True)
+
+
+def _reader(**options: Any) -> Lark:
+    grammar = Path(__file__).with_name("logic.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", start=["expression", "reading"], **options)
 
 
 def _index(variable: Token) -> int:
@@ -234,7 +242,7 @@ def _refuse_unbound(form: Form, text: str, start: str) -> None:
     number = next((n for n, is_bound in enumerate(_occurrences(form)) if not is_bound), None)
     if number is None:
         return
-    lexed = _LARK.parse_interactive(text, start=start).iter_parse()
+    lexed = _form_reader().parse_interactive(text, start=start).iter_parse()
     names: Iterable[Token] = (token for token in lexed if token.type in ("VARIABLE", "LETTER"))
     token = next(islice(names, number, None))
     raise LanguageError(
@@ -298,12 +306,6 @@ def read_spans(text: str) -> TermSpan:
         return _span(_tree_reader().parse(text, start=start))
     except UnexpectedInput as error:
         raise explain(error, text) from None
-
-
-@lru_cache(maxsize=1)
-def _tree_reader() -> Lark:
-    grammar = Path(__file__).with_name("logic.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", start=["expression", "reading"], propagate_positions=True)
 
 
 def _span(tree: Tree[Token]) -> TermSpan:

@@ -42,4 +42,6 @@ from annotations.language.grammar.recognizer import (
     Recognizer,
     RuleBook,
     Run,
+    WordChart,
+    recognizer_of,
 )

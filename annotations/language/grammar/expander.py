@@ -188,10 +188,17 @@ def readable(size: int) -> str:
 
 def _join(pieces: tuple[Derived[Item], ...], budget: Budget) -> Derived[Item] | None:
     """Join several results side by side, or return None if they disagree about a nonterminal."""
-    items = tuple(chain.from_iterable(piece[0] for piece in pieces))
+    items: tuple[Item, ...] = ()
+    binding: list[Bindings] = []
+    for words, bindings in pieces:
+        items += words
+        if bindings:
+            binding.append(bindings)
     budget.spend(len(pieces) + len(items))
+    if len(binding) < 2:
+        return items, binding[0] if binding else ()
     bound: dict[str, Any] = {}
-    for name, value in chain.from_iterable(piece[1] for piece in pieces):
+    for name, value in chain.from_iterable(binding):
         if bound.setdefault(name, value) != value:
             return None
     return items, tuple(sorted(bound.items(), key=_name))

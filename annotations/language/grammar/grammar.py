@@ -29,6 +29,13 @@ class Grammar:
 
     productions: tuple[Production, ...]
 
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self.productions)
+
     @cached_property
     def rules(self) -> dict[str, tuple[Symbols, ...]]:
         """Nonterminal → its distinct alternatives in the order of the files."""

@@ -63,7 +63,7 @@ from annotations.language.plans.plan import (
 from annotations.language.plans.planning import make_plan
 from annotations.language.plans.qualifying import Objection, is_qualified, objections, says_number
 from annotations.language.plans.reactions import Reaction, reaction_of
-from annotations.language.plans.reading import MAX_ROW, read_primitive, read_recipe
+from annotations.language.plans.reading import read_primitive, read_recipe
 from annotations.language.plans.request_kinds import other_requests
 from annotations.language.plans.rows import (
     AFTER_COMMANDS,

@@ -32,6 +32,7 @@ from annotations.language.plans.rows import (
 from annotations.language.texts import (
     MAX_NESTING,
     MAX_PREDICATE,
+    MAX_ROW,
     LanguageError,
     Position,
     require_length,
@@ -39,7 +40,6 @@ from annotations.language.texts import (
     require_writable,
 )
 
-MAX_ROW = 1_000  # characters
 MOST_CALLS = 30  # primitives of a recipe
 MOST_PARAMETERS = 20
 ARROW = "->"

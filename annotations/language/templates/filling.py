@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 from annotations.language.forms import (
@@ -40,6 +40,14 @@ class Composed:
 
     form: Form
     precedence: Precedence
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        # Once, since it looks through the whole form, and each command asks for it.
+        object.__setattr__(self, "_hash", hash((self.form, self.precedence)))
+
+    def __hash__(self) -> int:
+        return self._hash
 
 
 def precedence_of(value: tuple[str, ...] | Composed) -> Precedence:

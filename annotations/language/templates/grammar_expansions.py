@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 from annotations.language.forms import Form
-from annotations.language.grammar import Budget, Grammar, Recognizer, readable
+from annotations.language.grammar import Budget, Grammar, Recognizer, readable, recognizer_of
 from annotations.language.templates.bounded_cache import BoundedCache
 from annotations.language.templates.filling import Precedence
 from annotations.language.templates.synchronous import TemplateExpander
@@ -63,10 +63,8 @@ class GrammarExpansions:
     ) -> None:
         self.grammar = grammar
         self.expander = TemplateExpander(grammar, lines)
-        self._most_kept = most_kept
         self._kept: BoundedCache[tuple[str, str], TemplatePairs] = BoundedCache(most_kept, len)
         self._sizes: BoundedCache[tuple[str, str], int] = BoundedCache(most_kept)
-        self._judged: dict[str, bool] = {}
 
     def size(self, template: SemanticTemplate) -> int:
         """Return an upper bound on the number of pairs of the template. Raises as ``TemplateExpander.size``."""
@@ -99,12 +97,7 @@ class GrammarExpansions:
         worth = min(MOST_ENUMERATED, ENUMERATED_FOR_ONE * len(commands))
         if (is_enumerated or self.grammar.size() <= worth) and self.commands is not None:
             return self._command_set.intersection(commands)
-        judged = {} if len(self._judged) > self._most_kept else self._judged
-        for command in commands:
-            if command not in judged:
-                judged[command] = self._recognizer.accepts(command, budget)
-        self._judged = judged
-        return frozenset(command for command in commands if judged[command])
+        return frozenset(each for each in commands if self._recognizer.accepts(each, budget))
 
     def accepts(self, command: str, budget: Budget | None = None) -> bool:
         """Return whether the grammar derives ``command``. Raises TooManyCombinations."""
@@ -126,7 +119,7 @@ class GrammarExpansions:
 
     @cached_property
     def _recognizer(self) -> Recognizer:
-        return Recognizer(self.grammar)
+        return recognizer_of(self.grammar)
 
 
 def _collect(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from difflib import get_close_matches
+from functools import lru_cache
 
 from annotations.language.forms import (
     Application,
@@ -16,7 +17,7 @@ from annotations.language.forms import (
     read_form,
     walk,
 )
-from annotations.language.grammar import Budget, TooManyCombinations
+from annotations.language.grammar import Budget, Grammar, TooManyCombinations
 from annotations.language.templates.composition import SynchronousGrammar
 from annotations.language.templates.expansion import TaskCategory
 from annotations.language.templates.synchronous import TemplateExpander
@@ -143,9 +144,20 @@ def line_problems(category: TaskCategory) -> Iterator[tuple[int, Problem]]:
                 ),
             )
     try:
-        yield from _disagreements(category, lines)
+        found = _disagreements(category.grammar, category.lines)
     except LanguageError:  # said of the template that has the trouble
         return
+    for earlier, later, count, phrase in found:
+        index, line = lines[later]
+        yield (
+            index,
+            warning_at(
+                line.position,
+                f'{say_count(count, "phrase")} such as "{phrase}" with a different '
+                f"form at {category.lines[earlier].position}",
+                "the later form is kept; correct the one that is wrong",
+            ),
+        )
 
 
 def _reached(category: TaskCategory) -> set[str]:
@@ -159,29 +171,27 @@ def _reached(category: TaskCategory) -> set[str]:
     return reached
 
 
+@lru_cache(maxsize=24)
 def _disagreements(
-    category: TaskCategory, lines: list[tuple[int, SemanticTemplate]]
-) -> Iterator[tuple[int, Problem]]:
-    """Yield the lines that give a phrase another form than an earlier line of the same nonterminal."""
-    expander = TemplateExpander(category.grammar, category.lines)
+    grammar: Grammar, lines: tuple[SemanticTemplate, ...]
+) -> tuple[tuple[int, int, int, str], ...]:
+    """Return the pairs of lines of one nonterminal that give a phrase different forms.
+
+    Each is the place of the earlier and of the later line, how many phrases, and the first of them.
+    """
+    expander = TemplateExpander(grammar, lines)
     budget = Budget(LINE_STEPS)
     first: dict[tuple[str, str], tuple[str, int]] = {}
-    pairs: dict[tuple[int, int], list[str]] = {}
+    pairs: dict[tuple[int, int], dict[str, None]] = {}
     try:
-        for index, line in lines:
+        for place, line in enumerate(lines):
             for phrase, form in expander.pairs(line, budget):
-                text, earlier = first.setdefault((line.nonterminal, phrase), (form, index))
-                if text != form and earlier != index:
-                    pairs.setdefault((earlier, index), []).append(phrase)
+                text, earlier = first.setdefault((line.nonterminal, phrase), (form, place))
+                if text != form and earlier != place:
+                    pairs.setdefault((earlier, place), {})[phrase] = None
     except TooManyCombinations:
         pass  # the other lines are not compared
-    for (earlier, index), phrases in pairs.items():
-        yield (
-            index,
-            warning_at(
-                category.templates[index].position,
-                f'{say_count(len(set(phrases)), "phrase")} such as "{phrases[0]}" with a different '
-                f"form at {category.templates[earlier].position}",
-                "the later form is kept; correct the one that is wrong",
-            ),
-        )
+    return tuple(
+        (earlier, later, len(phrases), next(iter(phrases)))
+        for (earlier, later), phrases in pairs.items()
+    )

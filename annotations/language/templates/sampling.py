@@ -11,12 +11,20 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from random import Random
 
-from annotations.language.grammar import Expander, Recognizer, RuleBook, Run, anonymized, readable
+from annotations.language.grammar import (
+    Expander,
+    Recognizer,
+    RuleBook,
+    WordChart,
+    anonymized,
+    readable,
+    recognizer_of,
+)
 from annotations.language.templates.chart import ChartDerivation, TemplateChart
 from annotations.language.templates.composition import SynchronousGrammar
 from annotations.language.templates.expansion import (
@@ -178,23 +186,15 @@ class _Judge:
             self._places[category.name] = places
             templates = tuple(category.templates[index] for index in places)
             with_templates.append(TaskCategory(category.name, category.grammar, templates))
-            self._recognizers[category.name] = Recognizer(category.grammar)
-        self._chart = TemplateChart(with_templates)
+            self._recognizers[category.name] = recognizer_of(category.grammar)
+        self._charts = {each.name: TemplateChart([each]) for each in with_templates}
         self._rules = {each.name: _WordRules(each) for each in with_templates}
 
     def judge(self, drawn: _Drawn) -> _Judged:
         """Return what becomes of the command of a derivation."""
-        name, index = drawn.population.category.name, drawn.population.template_index
-        derivations = [ChartDerivation(drawn.form_text, name, index)]
-        if not self._is_decided(drawn):
-            derivations = [
-                ChartDerivation(
-                    each.form_text,
-                    each.task_category,
-                    self._places[each.task_category][each.template_index],
-                )
-                for each in self._chart.parse(drawn.command)
-            ]
+        derivations: list[ChartDerivation] = []
+        for name in self._charts:
+            derivations += self._derivations(drawn, name, is_first=not derivations)
         kept = derivations[0]
         in_grammar = self._recognizers[kept.task_category].accepts(drawn.command)
         expansion = Expansion(
@@ -216,17 +216,20 @@ class _Judge:
         )
         return _Judged(expansion, tuple(conflicts))
 
-    def _is_decided(self, drawn: _Drawn) -> bool:
-        """Return whether no chart has to say which derivation wins: it is the only one of the first category that has
-        any, and no other category has several."""
-        words = tuple(drawn.command.split())
-        found: list[str] = []
-        for name, rules in self._rules.items():
-            count = rules.count(words, at_most=2)
-            if count > 1:
-                return False
-            found += [name] * count
-        return found[:1] in ([], [drawn.population.category.name])
+    def _derivations(
+        self, drawn: _Drawn, category: str, is_first: bool
+    ) -> Iterable[ChartDerivation]:
+        """Yield the derivations of the command in a category, by a chart only where there may be another than the
+        drawn one; none where there is one at most and another category ``is_first``, which wins."""
+        count = self._rules[category].count(tuple(drawn.command.split()), at_most=2)
+        if not count or (count == 1 and not is_first):
+            return
+        if count == 1 and category == drawn.population.category.name:
+            yield ChartDerivation(drawn.form_text, category, drawn.population.template_index)
+            return
+        for each in self._charts[category].parse(drawn.command):
+            place = self._places[category][each.template_index]
+            yield ChartDerivation(each.form_text, category, place)
 
 
 class _WordRules:
@@ -247,46 +250,13 @@ class _WordRules:
 
     def count(self, words: tuple[str, ...], at_most: int) -> int:
         """Return how many derivations ``words`` have, or ``at_most`` where they have more."""
-        known: dict[tuple[int, int], dict[int, int]] = {}
+        chart = WordChart(self._book, words, at_most)
         found = 0
         for root in self._roots:
-            found += self._of_rule(root, 0, words, known).get(len(words), 0)
+            found += chart.ways(root)
             if found >= at_most:
                 return at_most
         return found
-
-    def _of_rule(
-        self,
-        rule: int,
-        start: int,
-        words: tuple[str, ...],
-        known: dict[tuple[int, int], dict[int, int]],
-    ) -> dict[int, int]:
-        """Return end → number of derivations of a rule that begin at ``start``; 2 stands for more."""
-        key = rule, start
-        if key in known:
-            return known[key]
-        ends: dict[int, int] = {}
-        word = words[start] if start < len(words) else ""
-        for alternative in self._book.rules[rule].candidates(word):
-            reached = {start: 1}
-            for item in alternative:
-                following: dict[int, int] = {}
-                for place, count in reached.items():
-                    if isinstance(item, Run):
-                        stop = place + len(item.words)
-                        if words[place:stop] == item.words:
-                            following[stop] = min(2, following.get(stop, 0) + count)
-                        continue
-                    for stop, inner in self._of_rule(item, place, words, known).items():
-                        following[stop] = min(2, following.get(stop, 0) + count * inner)
-                reached = following
-                if not reached:
-                    break
-            for stop, count in reached.items():
-                ends[stop] = min(2, ends.get(stop, 0) + count)
-        known[key] = ends
-        return ends
 
 
 class _Drawing:

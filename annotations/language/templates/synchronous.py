@@ -136,16 +136,18 @@ class TemplateExpander:
                 # A line may say nothing where another part of the command does.
                 if not (words or template.nonterminal) or len(bindings) < len(tracked):
                     continue
-                if bindings not in forms:
+                filled = forms.get(bindings)
+                if filled is None:
                     values = dict(bindings)
                     form = _filled(template, values)
                     precedence = tuple(precedence_of(values[name]) for name in names)
                     own = _filled(template, _stand_ins(values)) if composed else form
-                    forms[bindings] = FilledForm(form, canonical_text(form), precedence, own)
-                    budget.spend(len(forms[bindings].text))
-                    _require_indexable(forms[bindings].text, "form", template)
+                    filled = FilledForm(form, canonical_text(form), precedence, own)
+                    forms[bindings] = filled
+                    budget.spend(len(filled.text))
+                    _require_indexable(filled.text, "form", template)
                 _require_indexable(" ".join(words), "command", template)
-                yield words, forms[bindings]
+                yield words, filled
 
     def derivations(
         self, template: SemanticTemplate, index: int = 0, budget: Budget | None = None

@@ -25,6 +25,7 @@ from annotations.language.grammar import (
     Grammar,
     Recognizer,
     TooManyCombinations,
+    recognizer_of,
 )
 from annotations.language.templates.expansion import Conflict, Generated, TaskCategory
 from annotations.language.templates.filling import bare
@@ -171,7 +172,7 @@ class TemplateChecker:
         name = template.nonterminal
         if name and name not in self.grammar.rules:
             return
-        recognizer = Recognizer(self.grammar, name) if name else self.recognizer
+        recognizer = recognizer_of(self.grammar, name) if name else self.recognizer
         judged: list[tuple[str, bool]] = []  # each command and whether it is in the grammar
         with suppress(TooManyCombinations):  # the others are not judged
             distinct = tuple(dict.fromkeys(commands))
@@ -252,7 +253,7 @@ def template_checker(
     Raises:
         LanguageError: the grammar, or the lines, have a cycle.
     """
-    expander, recognizer = TemplateExpander(grammar, lines), Recognizer(grammar)
+    expander, recognizer = TemplateExpander(grammar, lines), recognizer_of(grammar)
     return TemplateChecker(grammar, expander, recognizer, predicates, task_category)
 
 

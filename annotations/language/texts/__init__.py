@@ -48,6 +48,7 @@ from annotations.language.texts.limits import (
     MAX_NONTERMINAL,
     MAX_PATTERN,
     MAX_PREDICATE,
+    MAX_ROW,
     MAX_TASK_CATEGORY,
     require_length,
     require_name,

@@ -33,15 +33,12 @@ ENCODINGS = {
     "utf-16-le": "UTF-16, little-endian",
     "utf-16-be": "UTF-16, big-endian",
 }
-# What XML may declare beside these: encodings of texts alone.
-_DECLARABLE = frozenset(
-    codecs.lookup(name).name
-    for name in (
-        *ENCODINGS, "ascii", "koi8-r", "koi8-u", "euc-jp", "iso2022_jp", "gb2312", "gbk", "big5", "utf-32",
-        "mac-cyrillic",
-        *(f"iso-8859-{number}" for number in (*range(1, 12), *range(13, 17))),
-        *(f"cp{number}" for number in (*range(1250, 1259), 437, 850, 852, 866, 874)),
-    )
+# What XML may declare: encodings of texts alone.
+_DECLARABLE = (
+    *ENCODINGS, "ascii", "koi8-r", "koi8-u", "euc-jp", "iso2022_jp", "gb2312", "gbk", "big5", "utf-32",
+    "mac-cyrillic",
+    *(f"iso-8859-{number}" for number in (*range(1, 12), *range(13, 17))),
+    *(f"cp{number}" for number in (*range(1250, 1259), 437, 850, 852, 866, 874)),
 )  # fmt: skip
 _DECLARATION = re.compile(rb"""<\?xml\s[^<>]*?\bencoding\s*+=\s*+["']([\w.:-]++)["']""")
 _LONGEST_DECLARATION = 200
@@ -269,7 +266,7 @@ def _encoding_of_xml(data: bytes, source: str) -> str:
         encoding = codecs.lookup(declared).name
     except LookupError:
         encoding = ""
-    if encoding not in _DECLARABLE:
+    if encoding not in {codecs.lookup(name).name for name in _DECLARABLE}:
         sentence = f"the document declares the encoding “{declared}”, which is not known here"
         raise LanguageError(sentence, Position(source), _SAVE_AS)
     # A declaration that reads as ASCII is not UTF-16 or UTF-32, whatever it says.

@@ -20,6 +20,8 @@ MAX_ENTITY = 500
 # Characters of the pattern of a template, and of a logical form wherever it is written.
 MAX_PATTERN = 5_000
 MAX_FORM = 5_000
+# Characters of a row of a recipe book.
+MAX_ROW = 1_000
 # Bytes of a command or a canonical form: a PostgreSQL index refuses rows above 2,704.
 MAX_INDEXED_BYTES = 2_500
 

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 from django import forms
 
 from annotations.generation.recipe_check import CheckedRow, RowModel, check_row
-from annotations.language.plans import MAX_ROW, RecipeBook, read_book, shipped_books
-from annotations.language.texts import LanguageError, Problem
+from annotations.language.plans import RecipeBook, read_book, shipped_books
+from annotations.language.texts import MAX_ROW, LanguageError, Problem
 from annotations.models import Primitive, Recipe
 from annotations.web.editing.noun_forms import NounForm
 

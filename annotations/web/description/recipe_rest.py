@@ -11,7 +11,8 @@ from rest_framework.response import Response
 
 from annotations.editing.recipe_books import replace_book, shipped_book_of
 from annotations.generation.recipe_check import FIELD, try_row
-from annotations.language.plans import MAX_ROW, RecipeBook, shipped_books
+from annotations.language.plans import RecipeBook, shipped_books
+from annotations.language.texts import MAX_ROW
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of

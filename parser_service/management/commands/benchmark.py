@@ -26,7 +26,7 @@ from parser_service.management.options import (
     read_seeds,
 )
 from parser_service.parsers.conditions import PAPERS_SETTINGS, Protocol
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 
 class Command(BaseCommand):
@@ -88,7 +88,7 @@ class Command(BaseCommand):
             raise Refusal(f"--jobs is {at_once}; it has to be 1 or more.", "option_out_of_range")
         todo = list(
             trials(
-                read_names(options["parsers"], list(PARSERS)),
+                read_names(options["parsers"], list(parsers())),
                 read_columns(
                     options["columns"],
                     options["train_test"],
@@ -124,7 +124,7 @@ class Command(BaseCommand):
 def _add_choice_of_cells(parser: CommandParser) -> None:
     """Add the options that choose what the table has: parsers, columns, seeds and splits."""
     for name, known in (
-        ("--parsers", PARSERS),
+        ("--parsers", parsers()),
         ("--train-test", [str(setting) for setting in PAPERS_SETTINGS]),
         ("--criteria", list(Criterion)),
         ("--protocols", list(Protocol)),

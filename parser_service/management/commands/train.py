@@ -17,7 +17,7 @@ from annotations.people.audit_log import record_command
 from parser_service.management.options import read_hyperparameters, read_sources
 from parser_service.models import TrainingRun
 from parser_service.parsers.conditions import Protocol
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.results.run_figures import report_run, report_seeds, with_reach
 from parser_service.runs import lifecycle, run_requests
 from parser_service.runs.train_run import train
@@ -32,7 +32,7 @@ class Command(ReportingCommand):
     )
 
     def add_options(self, parser: CommandParser) -> None:
-        parser.add_argument("parser", choices=PARSERS)
+        parser.add_argument("parser", choices=parsers())
         parser.add_argument("--world", required=True)
         parser.add_argument("--split", required=True, help="name of a frozen or imported split")
         parser.add_argument(
@@ -74,7 +74,7 @@ class Command(ReportingCommand):
             "split": find_split(home, options["split"], options["criterion"]),
             "parser": parser,
             "config": read_hyperparameters(parser, options["config"]),
-            "protocol": options["protocol"] or PARSERS[parser].protocols[0],
+            "protocol": options["protocol"] or parsers()[parser].protocols[0],
             "train_sources": read_sources(options["sources"]),
             "train_share": options["share"],
         }

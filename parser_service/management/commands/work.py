@@ -8,10 +8,9 @@ import sys
 from socket import gethostname
 from typing import Any
 
-from celery import current_app
 from django.core.management.base import BaseCommand, CommandParser
 
-from annotations.background import message_queue
+from annotations.background import message_queue, queue_app
 from annotations.models.background import Queue
 
 
@@ -35,7 +34,7 @@ class Command(BaseCommand):
     def handle(self, *args: Any, queue: list[str], **options: Any) -> None:
         os.environ.setdefault("CELERY_SKIP_CHECKS", "1")  # they load the pages, which train nothing
         # Not by Celery's command line, which loads a shell with its prompt besides.
-        worker = current_app.Worker(
+        worker = queue_app().Worker(
             hostname=f"{'-'.join(queue)}-{os.getpid()}@{gethostname()}",
             queues=[message_queue(each) for each in queue],
             loglevel=logging.getLevelName(logging.getLogger().level),

@@ -21,7 +21,7 @@ from parser_service.labelling.people_against_models import (
 )
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.pretrained_files import find_gaps
-from parser_service.parsers.registry import PARSERS, make_config
+from parser_service.parsers.registry import make_config, parsers, title_of
 from parser_service.runs.recommended import recommendation_for
 
 
@@ -30,15 +30,15 @@ from parser_service.runs.recommended import recommendation_for
 def paraphrase_runs(request: WorldRequest, world: World) -> HttpResponse:
     """Show the runs on each, and the button that starts them."""
     pairs = run_pairs(world)
-    parsers = trainable_parsers()
+    trainable = trainable_parsers()
     recommended = recommendation_for(world).parser
     context = {
         "pairs": pairs,
         "first_runs": [pair.people for pair in pairs],
         "is_active": any(pair.is_active for pair in pairs),
         "can_start": has_both(world),
-        "parsers": [(name, PARSERS[name].title) for name in parsers],
-        "chosen": recommended if recommended in parsers else "linear",
+        "parsers": [(name, title_of(name)) for name in trainable],
+        "chosen": recommended if recommended in trainable else "linear",
     }
     return render(request, "parser_service/labelling/_people_against_models.html", context)
 
@@ -47,7 +47,7 @@ def trainable_parsers() -> list[str]:
     """Return the parsers that learn from pairs alone and lack nothing here."""
     return [
         name
-        for name, entry in PARSERS.items()
+        for name, entry in parsers().items()
         if entry.learns
         and Protocol.STRICT in entry.protocols
         and not find_gaps(make_config(name), anywhere=False)

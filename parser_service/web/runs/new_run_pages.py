@@ -26,7 +26,7 @@ from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES, written_sources
 from parser_service.parsers.pretrained_files import Gap
 from parser_service.parsers.recommendation import Expectation, expectation_of, recommend
-from parser_service.parsers.registry import PARSERS, RegistryEntry, config_fields
+from parser_service.parsers.registry import RegistryEntry, config_fields, parsers
 from parser_service.results.accuracy_tables import seeds_url
 from parser_service.runs.recommended import (
     SplitContents,
@@ -49,7 +49,7 @@ def run_new(request: WorldRequest, world: World) -> HttpResponse:
     its form opens instead."""
     choices = choices_in(request.GET, world)
     wanted = request.POST.get("parser", choices.parser)
-    if wanted in PARSERS and (wanted != choices.parser or "choose" in request.POST):
+    if wanted in parsers() and (wanted != choices.parser or "choose" in request.POST):
         return redirect(f"{request.path}?{query_of(request.POST, wanted, choices.parser)}")
     form = RunForm(world, choices.parser, posted(request), initial=choices.initial)
     if request.method == "POST" and form.is_valid():
@@ -69,7 +69,7 @@ def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, ob
     return {
         "form": form,
         "chosen": choices.parser,
-        "entry": PARSERS[choices.parser],
+        "entry": parsers()[choices.parser],
         "note": choices.note,
         "picker": picker_of(world, chosen or usual_split(world), choices.parser),
         "has_splits": splits.exists(),
@@ -146,7 +146,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
     split = split_in(query, world)
     advice = recommendation_for(world, split)
     parser = query.get("parser", run.parser if run else advice.parser)
-    if parser not in PARSERS:
+    if parser not in parsers():
         note = f"There is no parser called {parser!r} any more."
         return RunChoices(advice.parser, {"protocol": advice.protocol}, note)
     initial: dict[str, Any] = values_of(run, parser) if run else {}
@@ -156,7 +156,7 @@ def choices_in(query: QueryDict, world: World) -> RunChoices:
             initial["protocol"] = advice.protocol
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
-    protocol, entry, note = initial.get("protocol"), PARSERS[parser], ""
+    protocol, entry, note = initial.get("protocol"), parsers()[parser], ""
     if protocol not in (None, "", *entry.protocols):
         note = f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
     return RunChoices(parser, initial, note)
@@ -257,7 +257,7 @@ def picker_of(world: World, split: Split | None, chosen: str = "") -> ParserPick
                 if source in scores[name]
             ),
         )
-        for name, entry in PARSERS.items()
+        for name, entry in parsers().items()
     ]
     others = [each for each in options if each.name != advice.parser]
     return ParserPicker(

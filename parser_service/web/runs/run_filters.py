@@ -14,11 +14,11 @@ from annotations.showing.filtering import Choices, PageFilters, Search
 from annotations.showing.paging import number_in
 from parser_service.models import TrainingRun
 from parser_service.models.runs import TrainingRunQuerySet, status_choices
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 
 def parser_choices() -> Choices:
-    return [(name, entry.title) for name, entry in PARSERS.items()]
+    return [(name, entry.title) for name, entry in parsers().items()]
 
 
 def split_choices(request: WorldRequest) -> Choices:

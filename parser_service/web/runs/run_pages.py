@@ -15,7 +15,7 @@ from annotations.models.background import Status
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.showing.listing import Listing, Sort
 from parser_service.models import TrainingRun
-from parser_service.parsers.registry import PARSERS, title_of
+from parser_service.parsers.registry import parsers, title_of
 from parser_service.results.learning_curves import curves_url
 from parser_service.results.run_figures import KNOWN_FORMS, order_of, scores_by_form
 from parser_service.results.table_parts import marked
@@ -85,7 +85,7 @@ def run_charts(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 
 def state_of(world: World, pk: int) -> dict[str, Any]:
     run = get_object_or_404(TrainingRun.objects.for_table(), world=world, pk=pk)
-    entry = PARSERS.get(run.parser)
+    entry = parsers().get(run.parser)
     return {
         "run": run,
         "aside": marked(title_of(run.parser), run.parser),

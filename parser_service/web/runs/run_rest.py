@@ -22,7 +22,7 @@ from annotations.web.rest.routes import RowsRoute, RowsViewSet
 from annotations.web.worlds.job_rest import JobSerializer, accepted
 from parser_service.models import Checkpoint, EpochMetric, RunEvent, TrainingRun
 from parser_service.parsers.conditions import TRAIN_SOURCES, Protocol
-from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.parsers.registry import config_fields, parsers
 from parser_service.reviews.state import analysis_of
 from parser_service.runs import lifecycle
 from parser_service.runs.analysis_requests import request_analysis
@@ -61,7 +61,7 @@ class NewRuns(Fields):
     """What to train, on what: one run per seed, counting up. What ``config`` leaves out is at its default."""
 
     split = serializers.IntegerField(min_value=1, max_value=2**63 - 1)
-    parser = serializers.ChoiceField(choices=list(PARSERS))
+    parser = serializers.ChoiceField(choices=list(parsers()))
     config = serializers.DictField(child=serializers.JSONField(), default=dict)
     protocol = serializers.ChoiceField(choices=[each.value for each in Protocol], required=False)
     train_sources = serializers.ChoiceField(choices=TRAIN_SOURCES, default="gen")
@@ -124,7 +124,7 @@ class RunViewSet(RowsViewSet):
             problem = {"field": f"config.{unknown[0][:80]}", "message": said}
             raise Refusal(said, "unknown_hyperparameter", problems=[problem])
         config = {PREFIX + name: value for name, value in {**declared, **sent["config"]}.items()}
-        protocol = sent.get("protocol", PARSERS[sent["parser"]].protocols[0])
+        protocol = sent.get("protocol", parsers()[sent["parser"]].protocols[0])
         asked = {**sent, **config, "protocol": protocol, "share": 100 * sent["train_share"]}
         form = RunForm(self.world, sent["parser"], asked)
         if not form.is_valid():

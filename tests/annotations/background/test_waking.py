@@ -6,9 +6,9 @@ import os
 from urllib.parse import urlsplit
 
 import pytest
-from celery import current_app
 
 from annotations.background.waking import send_wake_up
+from gpsr_site.celery import app
 
 
 @pytest.fixture
@@ -16,16 +16,16 @@ def broker(monkeypatch):
     """Points Celery to another address, as an operator does."""
 
     def point(address: str) -> None:
-        monkeypatch.setattr(current_app.conf, "broker_url", address)
-        monkeypatch.setattr(current_app.conf, "broker_write_url", address)
-        current_app.conf.broker_transport = "amqp"
-        monkeypatch.setattr(current_app, "_pool", None)
-        current_app.amqp._producer_pool = None
+        monkeypatch.setattr(app.conf, "broker_url", address)
+        monkeypatch.setattr(app.conf, "broker_write_url", address)
+        app.conf.broker_transport = "amqp"
+        monkeypatch.setattr(app, "_pool", None)
+        app.amqp._producer_pool = None
 
-    transport = current_app.conf.get("broker_transport")
+    transport = app.conf.get("broker_transport")
     yield point
-    current_app.conf.broker_transport = transport
-    current_app.amqp._producer_pool = None
+    app.conf.broker_transport = transport
+    app.amqp._producer_pool = None
 
 
 @pytest.mark.parametrize("place", ["gone", "nobody:wrong@127.0.0.1:5672//"])

@@ -11,7 +11,7 @@ import pytest
 from django.core.management import get_commands, load_command_class
 
 from annotations.language.texts import article, looks_plural
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from tests.filled_world import leave_traces
 from tests.gpsr_site.routes.addresses import address
 from tests.gpsr_site.routes.policy import POLICY
@@ -40,7 +40,7 @@ def unsaid() -> list[str]:
 UNSAID = re.compile(rf"\b(?:{'|'.join(map(re.escape, unsaid()))})s?\b", re.IGNORECASE)
 # Names in the registry, but not those of files; "linear" and "ranker" are words too.
 REGISTERED = re.compile(
-    rf"(?<![\w/-])(?:{'|'.join(sorted(PARSERS.keys() - {'linear', 'ranker'}, reverse=True))})(?![\w-]|\.md)"
+    rf"(?<![\w/-])(?:{'|'.join(sorted(parsers().keys() - {'linear', 'ranker'}, reverse=True))})(?![\w-]|\.md)"
 )
 
 

@@ -15,7 +15,7 @@ from parser_service.parsers.recommendation import (
     expectation_of,
     recommend,
 )
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 
 DOCS = Path(__file__).resolve().parents[3] / "docs/design/parsers.md"
 DOMAIN, STRICT = Protocol.DOMAIN, Protocol.STRICT
@@ -70,7 +70,7 @@ SAMPLE = {"generated": asked(191, 9, taught=2), "paraphrased": asked(25, taught=
 def test_the_parser_follows_from_what_there_is(has, lacking, expected):
     advice = recommend(has, lacking)
     assert (advice.parser, advice.protocol) == expected
-    assert advice.protocol in PARSERS[advice.parser].protocols
+    assert advice.protocol in parsers()[advice.parser].protocols
     assert advice.reason.endswith(".")
 
 
@@ -85,7 +85,7 @@ def test_it_never_recommends_what_lacks_something(overlaps, trained):
 def test_where_a_third_is_new_no_parser_of_known_forms_is_recommended(overlaps, lacking):
     for pairs in (50, 1000):
         advice = recommend(material(pairs, pairs, **overlaps), lacking)
-        assert PARSERS[advice.parser].writes_new_forms
+        assert parsers()[advice.parser].writes_new_forms
 
 
 def test_a_parser_of_known_forms_is_expected_to_be_right_on_those_alone():
@@ -119,7 +119,7 @@ def test_without_a_word_of_people_generated_commands_say_which_forms_they_ask_fo
     assert expectation_of("linear", material()).said == pytest.approx(0.8)
 
 
-@pytest.mark.parametrize("parser", PARSERS)
+@pytest.mark.parametrize("parser", parsers())
 @pytest.mark.parametrize("overlaps", [FULL, THIRD, NONE, SAMPLE, {}])
 def test_what_to_expect_is_a_share(parser, overlaps):
     expected = expectation_of(parser, material(**overlaps))
@@ -152,4 +152,4 @@ def test_what_pages_expect_is_what_the_docs_say():
 
 def test_a_parser_that_writes_no_new_form_is_right_on_none():
     for name, measured in MEASURED.items():
-        assert measured.new_forms == 0 or PARSERS[name].writes_new_forms
+        assert measured.new_forms == 0 or parsers()[name].writes_new_forms

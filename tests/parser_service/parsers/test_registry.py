@@ -9,18 +9,18 @@ from annotations.language.texts.errors import Refusal
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.interface import Parser, ScoreKind
 from parser_service.parsers.registry import (
-    PARSERS,
     config_class,
     config_fields,
     config_values,
     load_class,
     make_config,
+    parsers,
 )
 
 
-@pytest.mark.parametrize("name", PARSERS)
+@pytest.mark.parametrize("name", parsers())
 def test_every_entry_agrees_with_its_class(name):
-    entry, parser = PARSERS[name], load_class(name)
+    entry, parser = parsers()[name], load_class(name)
     assert issubclass(parser, Parser)
     assert (parser.name, parser.version, parser.protocols) == (name, entry.version, entry.protocols)
     assert parser.Config is config_class(name)
@@ -28,7 +28,7 @@ def test_every_entry_agrees_with_its_class(name):
     assert entry.queue in ("cpu", "gpu", "quick")
 
 
-@pytest.mark.parametrize("name", PARSERS)
+@pytest.mark.parametrize("name", parsers())
 def test_a_config_is_frozen_and_survives_json(name):
     config = make_config(name)
     assert is_dataclass(config)
@@ -38,7 +38,7 @@ def test_a_config_is_frozen_and_survives_json(name):
             setattr(config, fields[0].name, fields[0].default)
 
 
-@pytest.mark.parametrize("name", PARSERS)
+@pytest.mark.parametrize("name", parsers())
 def test_every_hyperparameter_has_a_description_and_a_default_within_its_bounds(name):
     for field in config_fields(name):
         assert field.description.endswith(".")
@@ -54,8 +54,8 @@ def test_an_unknown_parser_is_refused_with_the_names_there_are():
 
 def test_reading_the_hyperparameters_of_every_parser_loads_neither_torch_nor_sklearn():
     code = (
-        "import sys; from parser_service.parsers.registry import PARSERS, config_fields, make_config\n"
-        "for name in PARSERS: config_fields(name), make_config(name)\n"
+        "import sys; from parser_service.parsers.registry import parsers, config_fields, make_config\n"
+        "for name in parsers(): config_fields(name), make_config(name)\n"
         "sys.exit(bool({'torch', 'scipy', 'sklearn'} & {*sys.modules}))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
@@ -70,7 +70,7 @@ def test_loading_a_class_leaves_the_garbage_collector_on():
     assert gc.isenabled()
 
 
-@pytest.mark.parametrize("name", PARSERS)
+@pytest.mark.parametrize("name", parsers())
 def test_every_parser_says_what_its_scores_are(name):
     kinds = {
         "grammar-oracle": None,

@@ -10,11 +10,10 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
-from celery import current_app
 from kombu import Connection
 from kombu.exceptions import KombuError
 
-from annotations.background import TASK, message_queue
+from annotations.background import TASK, message_queue, queue_app
 from parser_service.models import Worker
 from parser_service.runs import lifecycle, run_requests
 from tests.durability.site import free_port
@@ -109,7 +108,7 @@ def test_workers_outlive_what_a_broker_lets_them_hold(
 
 def _ring(connection: Connection, queue: str) -> None:
     """Send a message to a worker through ``connection``; the test's own process has another broker."""
-    current_app.send_task(TASK, args=[queue], queue=message_queue(queue), connection=connection)
+    queue_app().send_task(TASK, args=[queue], queue=message_queue(queue), connection=connection)
 
 
 def _waiting(connection: Connection, queue: str) -> int:

@@ -184,7 +184,7 @@ def test_only_the_last_and_the_best_checkpoint_stay_on_the_disk(split):
     assert {path.name for path in folder.iterdir()} == rows
 
 
-@pytest.mark.parametrize("name", registry.PARSERS)
+@pytest.mark.parametrize("name", registry.parsers())
 def test_a_parser_of_the_registry_can_be_made_for_a_run_or_says_what_it_lacks(split, name):
     try:
         run = claimed(split, name, protocol=registry.entry(name).protocols[0])

@@ -7,9 +7,9 @@ import json
 import pytest
 
 from annotations.exchange.starter_world import load_starter_world
+from annotations.language.corpus import Criterion
 from annotations.language.forms import canonical_text, read_form
 from annotations.language.world import Entity, Ontology
-from annotations.models.splits import Criterion
 from parser_service.parsers.interface import Candidate, ScoreKind
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.parse_answers import read_answers

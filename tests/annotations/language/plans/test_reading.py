@@ -5,14 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.language.plans import (
-    MAX_ROW,
     EffectKind,
     read_book,
     read_primitive,
     read_recipe,
     shipped_books,
 )
-from annotations.language.texts.errors import LanguageError, Position
+from annotations.language.texts import MAX_ROW, LanguageError, Position
 
 NAMES = st.from_regex(r"[a-z]{2,8}", fullmatch=True).filter(lambda name: name != "operator")
 

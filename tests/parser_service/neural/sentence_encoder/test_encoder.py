@@ -8,7 +8,7 @@ from annotations.language.texts.errors import Refusal
 from parser_service.neural.pretrained import load_encoder
 from parser_service.neural.sentence_encoder import SentenceEncoder
 from parser_service.neural.sentence_encoder.encoder import LONGEST
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
 
 TEXTS = ["bring me the apple", "go", "find the apple"]
@@ -55,7 +55,7 @@ def test_a_text_without_a_subword_has_a_vector_that_is_like_no_other(encoder):
 def test_a_very_long_text_is_cut(encoder):
     assert encoder.vectors(["apple " * 1000]).shape == (1, 32)
     assert len(encoder.tokenizer.encode("apple " * 1000).ids) == LONGEST
-    assert PARSERS["ranker"].most_subwords == LONGEST  # as pages say
+    assert parsers()["ranker"].most_subwords == LONGEST  # as pages say
 
 
 def test_described_and_loaded_it_encodes_alike(encoder, tmp_path):

@@ -11,7 +11,7 @@ from parser_service.neural.seq2seq.rows import Seq2SeqGlove, Seq2SeqMiniLm
 from parser_service.neural.word_vectors.vector_cache import VectorCache
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.interface import Cancelled, Pair
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.parsers.words import words
 from tests.parser_service.neural.conftest import PRETRAINED, Recorder, StoppedOnce, parser_of
 from tests.parser_service.neural.tampering import alter_weights
@@ -30,7 +30,7 @@ def same_weights(one, other):
 
 
 def test_these_are_the_rows_that_read_pretrained_words():
-    assert set(PRETRAINED) == {name for name in PARSERS if name.startswith("seq2seq-")}
+    assert set(PRETRAINED) == {name for name in parsers() if name.startswith("seq2seq-")}
 
 
 @pytest.mark.parametrize("name", PRETRAINED)

@@ -112,4 +112,4 @@ def register_all(monkeypatch) -> None:
             protocols=("strict",),
             queue="quick",
         )
-        monkeypatch.setitem(registry.PARSERS, parser.name, entry)
+        monkeypatch.setitem(registry.parsers(), parser.name, entry)

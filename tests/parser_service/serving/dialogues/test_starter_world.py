@@ -7,9 +7,9 @@ import pytest
 from django.utils import timezone
 
 from annotations.exchange.starter_world import STARTER_WORLD, load_starter_world
+from annotations.language.corpus import Criterion
 from annotations.language.plans import plan_schema
 from annotations.models import User
-from annotations.models.splits import Criterion
 from parser_service.models import Promotion, PromotionState
 from parser_service.serving.metrics import Metrics
 from parser_service.serving.shelf import Shelf

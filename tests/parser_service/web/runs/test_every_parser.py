@@ -12,7 +12,7 @@ from parser_service.models import TrainingRun
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.pretrained_files import missing_weights
-from parser_service.parsers.registry import PARSERS, config_fields, config_values, make_config
+from parser_service.parsers.registry import config_fields, config_values, make_config, parsers
 from parser_service.runs.worker import work_next
 from tests.parser_service.llm_server import installed_tiny_server
 from tests.parser_service.made_up import TINY, VERBS, made_up_pairs
@@ -22,10 +22,14 @@ NEW = "/w/home/runs/new/"
 # Of these, each parser is given what it has.
 SMALL = {**TINY, "epochs": 2, "patience": 2, "beam_width": 2, "steps": 12}
 # Over the training pairs, with ``SMALL``. Each half of a ranker's steps begins with one of its own.
-PASSES = {"ranker": 3, "t5": 2, **dict.fromkeys((each for each in PARSERS if "seq2seq" in each), 2)}
+PASSES = {
+    "ranker": 3,
+    "t5": 2,
+    **dict.fromkeys((each for each in parsers() if "seq2seq" in each), 2),
+}
 NAMED = {"model": "tiny"}  # what has no default and has to be named
 WEIGHTS = ("glove", "elmo", "encoder")  # the hyperparameters that name some
-every_parser = pytest.mark.parametrize("parser", PARSERS)
+every_parser = pytest.mark.parametrize("parser", parsers())
 
 Wrong = dict[str, tuple[str, str]]
 """By the name of a field: what is put in, and what is said of it."""
@@ -34,7 +38,7 @@ Wrong = dict[str, tuple[str, str]]
 def fields(parser: str) -> list[ConfigField]:
     """The hyperparameters, under the names that their fields have, and two fields of every form."""
     seed = ConfigField("seed", int, 0, "", minimum=0, maximum=2**32 - 1)
-    protocol = ConfigField("protocol", str, "", "", choices=PARSERS[parser].protocols)
+    protocol = ConfigField("protocol", str, "", "", choices=parsers()[parser].protocols)
     return [seed, protocol, *(renamed(each) for each in config_fields(parser))]
 
 
@@ -127,7 +131,7 @@ def asked_small(client, parser: str) -> dict[str, str]:
     small = {f"config-{name}": str(value) for name, value in SMALL.items()}
     filled_in = offered(client, parser)
     changes = {name: value for name, value in small.items() if name in filled_in}
-    strictest = PARSERS[parser].protocols[0]  # whichever is recommended
+    strictest = parsers()[parser].protocols[0]  # whichever is recommended
     return {**filled_in, **changes, "train_sources": "para", "protocol": strictest, "seed": "7"}
 
 
@@ -145,7 +149,7 @@ def test_the_form_comes_filled_with_the_defaults(
     assert (run.parser, run.status) == (parser, "queued")
     assert run.changed_hyperparameters() == tuple(named.items())
     assert run.config == {**config_values(make_config(parser)), **named}
-    assert (run.protocol, run.seed) == (PARSERS[parser].protocols[0], 0)
+    assert (run.protocol, run.seed) == (parsers()[parser].protocols[0], 0)
 
 
 @every_parser
@@ -219,7 +223,7 @@ def cells_of(page, run) -> list:
     return row.cells
 
 
-@pytest.mark.parametrize("parser", [name for name in PARSERS if "glove" in named_weights(name)])
+@pytest.mark.parametrize("parser", [name for name in parsers() if "glove" in named_weights(name)])
 def test_weights_that_are_missing_are_asked_for_and_the_run_is_refused(
     parser, split, adam, no_weights
 ):
@@ -231,7 +235,7 @@ def test_weights_that_are_missing_are_asked_for_and_the_run_is_refused(
     assert not TrainingRun.objects.exists()
 
 
-@pytest.mark.parametrize("parser", [name for name in PARSERS if named_weights(name)])
+@pytest.mark.parametrize("parser", [name for name in parsers() if named_weights(name)])
 def test_weights_of_another_name_are_looked_for_under_it(
     parser, split, adam, encoders, weights_are_there
 ):

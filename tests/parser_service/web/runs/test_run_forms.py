@@ -10,7 +10,7 @@ import pytest
 
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers import pretrained_files
-from parser_service.parsers.registry import PARSERS
+from parser_service.parsers.registry import parsers
 from parser_service.runs import run_requests
 from parser_service.web.runs.new_run_pages import picker_of
 from tests.parser_service.made_up import make_split
@@ -35,10 +35,10 @@ def options_of(world, split=None):
 
 def test_every_parser_is_offered_once_with_a_sentence(sample):
     picker = picker_of(sample.world, sample.split)
-    assert sorted(each.name for each in picker.options) == sorted(PARSERS)
+    assert sorted(each.name for each in picker.options) == sorted(parsers())
     assert not picker.recommended.gaps and not any(each.gaps for each in picker.able)
     assert all(each.gaps for each in picker.lacking)
-    for entry in PARSERS.values():
+    for entry in parsers().values():
         assert entry.in_short.endswith("."), entry.title
 
 
@@ -152,7 +152,7 @@ def test_a_parser_that_asks_a_server_says_that_it_has_none(sample, adam):
     assert not TrainingRun.objects.filter(parser="llm").exists()
 
 
-@pytest.mark.parametrize("parser", PARSERS)
+@pytest.mark.parametrize("parser", parsers())
 def test_no_form_opens_with_changed_hyperparameters(parser, sample, adam):
     assert adam.get(NEW, {"parser": parser}).context["form"].changed == []
 

@@ -13,7 +13,7 @@ from django.utils.html import escape
 from annotations.people.rate_limits import STARTED_RUNS
 from parser_service.models import RunEvent, TrainingRun, Worker
 from parser_service.parsers.interface import EpochReport
-from parser_service.parsers.registry import PARSERS, config_fields
+from parser_service.parsers.registry import config_fields, parsers
 from parser_service.runs import lifecycle, run_requests
 from tests.notices import levels
 from tests.parser_service.made_up import make_split
@@ -27,7 +27,7 @@ def defaults(parser, **changes):
 
 def form(sample, parser="seq2seq", **changes):
     general = {"split": sample.split.pk, "train_sources": "para", "seed": 7, "seeds": 1}
-    general["protocol"] = PARSERS[parser].protocols[0]
+    general["protocol"] = parsers()[parser].protocols[0]
     return {**general, **defaults(parser, **changes)}
 
 
@@ -40,7 +40,7 @@ def test_a_run_in_a_list_leads_to_its_split(path, sample, adam):
     )
 
 
-@pytest.mark.parametrize("parser", PARSERS)
+@pytest.mark.parametrize("parser", parsers())
 def test_every_parser_has_a_form_with_its_hyperparameters(parser, sample, adam):
     page = adam.get("/w/home/runs/new/", {"parser": parser})
     shown = page.context["form"]
