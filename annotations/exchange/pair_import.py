@@ -96,10 +96,11 @@ def _store(
     world = World.objects.filter(name=report.world).first()
     finder = SourceFinder(world)
     progress.report(0.3, "finding the source of each paraphrase")
-    sources = []
+    sources, forms = [], []
     for triple in files.triples:
         progress.check()
         sources.append(finder.source(triple.command, triple.form))
+        forms.append(triple.canonical_form)
     progress.report(0.5, "preparing the splits")
     with ExitStack() as stack:
         splits = [
@@ -111,7 +112,7 @@ def _store(
             locked = lock_world(report.world, by)
             if world is not None and locked.generations != world.generations:
                 return None
-            paraphrases = plan_paraphrases(locked, files.triples, sources, brings_back)
+            paraphrases = plan_paraphrases(locked, files.triples, forms, sources, brings_back)
             added = paraphrases.apply(by).added
             for split in splits:
                 _, is_new = split.store(locked, by)
@@ -187,16 +188,18 @@ def _example(
 def plan_paraphrases(
     world: World,
     triples: Sequence[GroundedTriple],
+    forms: Sequence[str],
     sources: Sequence[PromptSource],
     brings_back: bool,
 ) -> RowPlan[Paraphrase]:
-    """Plan to add the records that are not there, each once, behind those that are."""
+    """Plan to add the records that are not there, each once, behind those that are. ``forms`` are their canonical
+    texts."""
     known = set(world.paraphrases.values_list("prompt", "utterance", "grounded_form"))
     last = world.paraphrases.aggregate(last=Max("position"))["last"]
     following = 0 if last is None else last + 1
     new: list[Paraphrase] = []
-    for triple, source in zip(triples, sources, strict=True):
-        key = (triple.command, triple.paraphrase, triple.canonical_form)
+    for triple, form, source in zip(triples, forms, sources, strict=True):
+        key = (triple.command, triple.paraphrase, form)
         if key not in known:
             known.add(key)
             apart = distance(triple.paraphrase, triple.command)
@@ -206,7 +209,7 @@ def plan_paraphrases(
                     command=source.command,
                     prompt=triple.command,
                     utterance=triple.paraphrase,
-                    grounded_form=triple.canonical_form,
+                    grounded_form=form,
                     logical_form=source.logical_form,
                     edit_distance=apart.edit,
                     jaccard_distance=apart.jaccard,
