@@ -10,11 +10,15 @@ class SiteConfig(AppConfig):
     name = "gpsr_site"
 
     def ready(self) -> None:
-        """Register the system check. Start the garbage collector, which ``manage.py`` has stopped.
+        """Register the system check and the messages of forms, before any form is made. Start the garbage collector,
+        which ``manage.py`` has stopped.
 
         What is loaded stays to the end of the process. To look through it again and again while it
         is loaded takes a fifth of the time to start.
         """
+        from gpsr_site.web.plain_messages import speak_plainly
+
+        speak_plainly()
         gc.freeze()
         gc.enable()
         from gpsr_site.backup.backup_checks import check_columns

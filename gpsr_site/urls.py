@@ -19,10 +19,8 @@ from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
 from gpsr_site.pages.document_pages import document, document_image, documents
 from gpsr_site.pages.home_pages import banner, favicon, healthz, home, world
 from gpsr_site.pages.search import search
-from gpsr_site.web.plain_messages import speak_plainly
 from parser_service.rest_urls import urlpatterns as parser_routes
 
-speak_plainly()
 API_ROUTES: list[URLPattern | URLResolver] = [*corpus_routes, *parser_routes]
 # Nothing here is viewed on another site, and two free parts of an address take quadratic time to match.
 ADMINISTRATION = [
