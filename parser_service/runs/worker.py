@@ -15,7 +15,7 @@ from datetime import timedelta
 from functools import partial
 from typing import Any
 
-from celery import bootsteps, current_app, shared_task
+from celery import bootsteps, shared_task
 from celery.signals import worker_process_init
 from django.conf import settings
 from django.db import connections
@@ -48,7 +48,7 @@ def work_next(task: Any, queue: str) -> None:
 
 def _served_queues() -> list[str]:
     """Return the queues that this worker serves; none outside a worker."""
-    consumed = current_app.amqp.queues.consume_from
+    consumed = background.queue_app().amqp.queues.consume_from
     return [queue for queue in Queue.values if message_queue(queue) in consumed]
 
 
