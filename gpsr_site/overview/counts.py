@@ -1,9 +1,16 @@
-"""How much there is of everything in a world, and how much of it waits for somebody, in one query."""
+"""How much there is of everything in a world, and how much of it waits for somebody.
+
+Most numbers are counted for each page. Those of what a world may have very many of are counted for each page
+too while there are few. After that a process keeps them for a while that is long beside the time of counting,
+so that a page costs the same however many rows there are (docs/design/decisions.md).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
+from time import monotonic
 from typing import Any
 
 from django.core.exceptions import EmptyResultSet
@@ -27,6 +34,7 @@ from annotations.models import (
     AuditFinding,
     Command,
     Entity,
+    Job,
     LogicalForm,
     Membership,
     Paraphrase,
@@ -44,6 +52,18 @@ from annotations.models.corpus import ParaphraseStatus
 from annotations.models.description import ProblemSubject, TemplateStatus
 from parser_service.models import Promotion, TrainingRun
 
+# What a world may have very many of.
+LARGE = (
+    *("commands", "command_problems", "forms", "paraphrases", "paraphrases_waiting"),
+    *("utterances", "utterances_waiting", "work_items", "work_items_free", "audit_findings"),
+)
+MOST_COUNTED = 10_000  # rows of these together that are counted for each page
+MOST_EXACT = 1_000  # free work items; nobody may be told that there is work where there is none
+# For how many times the seconds of counting a process keeps the numbers; the second where a job has ended since, or
+# commands have been generated: what changes most of the rows at once.
+SHARE, SHARE_AFTER_JOB = 50, 5
+MOST_SECONDS = 600.0
+
 
 @dataclass(frozen=True, slots=True)
 class Counts:
@@ -53,7 +73,7 @@ class Counts:
     generation; ``stale`` is 1 where grammar or templates have changed since the last generation.
     ``utterances_waiting`` have no form and are no free item of the queue, so that nothing is counted twice.
     ``runs_failed`` and ``runs_lost`` leave out a run if the same parser has succeeded on the same split
-    since.
+    since. ``age`` is the seconds since those of ``LARGE`` were counted.
     """
 
     members: int
@@ -85,6 +105,7 @@ class Counts:
     runs_lost: int
     evaluated: int
     promotions_proposed: int
+    age: float = 0
 
     @property
     def awaits_first_commands(self) -> bool:
@@ -107,39 +128,133 @@ class Counts:
         return self.runs_queued + self.runs_running
 
 
+Stamp = tuple[int, int]  # how often commands were generated, and the newest job that has ended
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """The numbers of ``LARGE`` of a world. ``stamp`` is what had last changed most of them ``counted_at`` that
+    second, which took some ``seconds``."""
+
+    numbers: dict[str, int]
+    stamp: Stamp
+    counted_at: float
+    seconds: float
+
+    def is_due(self, stamp: Stamp, now: float) -> bool:
+        share = SHARE if stamp == self.stamp else SHARE_AFTER_JOB
+        return now - self.counted_at >= min(share * self.seconds, MOST_SECONDS)
+
+
+_kept: dict[int, _Kept] = {}  # of the worlds with more than MOST_COUNTED rows, by key
+_in_hand: set[int] = set()  # the keys of those that a thread counts anew; others take what is kept
+
+
 def counts_of(world: World) -> Counts:
     """Count the rows of ``world``."""
     return counts_of_all(World.objects.filter(pk=world.pk))[world.pk]
 
 
 def counts_of_all(worlds: QuerySet[World]) -> dict[int, Counts]:
-    """Count the rows of several worlds, by key."""
-    counting, values = _statement()
+    """Count the rows of several worlds, by key. Two queries, one where the large numbers are kept."""
     try:
         keys, chosen = worlds.order_by().values("id").query.sql_with_params()
     except EmptyResultSet:
         return {}
+    small = _count(_small_statement(), keys, chosen)
+    stamps = {key: (each.pop("generations"), each.pop("job")) for key, each in small.items()}
+    large = _large_numbers(stamps)
+    now = monotonic()
+    counted = {}
+    for key, numbers in small.items():
+        some_free, kept = numbers.pop("some_free"), large[key]
+        free = kept.numbers["work_items_free"]
+        exact = some_free if some_free < MOST_EXACT else max(some_free, free)
+        age = now - kept.counted_at
+        counted[key] = Counts(**{**numbers, **kept.numbers, "work_items_free": exact}, age=age)
+    return counted
+
+
+def _large_numbers(stamps: dict[int, Stamp]) -> dict[int, _Kept]:
+    """Return the numbers of ``LARGE`` of the worlds with these keys, counted now or kept."""
+    began = monotonic()
+    large = {
+        key: kept
+        for key, stamp in stamps.items()
+        if (kept := _kept.get(key)) and (key in _in_hand or not kept.is_due(stamp, began))
+    }
+    if not (missing := [key for key in stamps if key not in large]):
+        return large
+    _in_hand.update(missing)
+    try:
+        counted = _count(_large_statement(), ", ".join(["%s"] * len(missing)), missing)
+    finally:
+        _in_hand.difference_update(missing)
+    seconds = monotonic() - began
+    total = sum(sum(numbers.values()) for numbers in counted.values())
+    for key in missing:
+        numbers = counted.get(key) or dict.fromkeys(LARGE, 0)  # deleted this moment
+        rows = sum(numbers.values())
+        large[key] = _Kept(numbers, stamps[key], began, seconds * rows / max(total, 1))
+        if rows > MOST_COUNTED:
+            _kept[key] = large[key]
+        else:
+            _kept.pop(key, None)
+    return large
+
+
+def _count(
+    statement: tuple[str, tuple[Any, ...]], keys: str, chosen: Iterable[Any]
+) -> dict[int, dict[str, int]]:
+    """Return what a statement counts for the worlds whose keys a list or query of SQL says: key → name → number."""
+    counting, values = statement
     with connection.cursor() as cursor:
         query = f"SELECT * FROM ({counting}) AS counted WHERE id IN ({keys})"
         cursor.execute(query, [*values, *chosen])
-        return {key: Counts(*numbers) for key, *numbers in cursor.fetchall()}
+        names = [each[0].removeprefix("n_") for each in cursor.description[1:]]
+        return {key: dict(zip(names, row, strict=True)) for key, *row in cursor.fetchall()}
 
 
 @cache
-def _statement() -> tuple[str, tuple[Any, ...]]:
-    """Return the query that counts for every world: the key, then the fields of ``Counts``.
+def _small_statement() -> tuple[str, tuple[Any, ...]]:
+    """Return the query that counts for every world what there is little of: the key, the fields of ``Counts`` but
+    ``LARGE``, the stamp, and the free items up to ``MOST_EXACT``.
 
     Composed once: Django takes longer for that than the database for the answer.
     """
-    counted: dict[str, Expression] = {
-        name: _aggregate(rows, path, Count("pk")) for name, (rows, path) in _rows_to_count().items()
+    rows = _rows_to_count()
+    counted: dict[str, Expression | F | Subquery[Any]] = {
+        name: _aggregate(*rows[name], Count("pk")) for name in rows if name not in LARGE
     }
     counted["members"] = _aggregate(Membership.objects.all(), "world", Count("user", distinct=True))
     without_form = F("commands_in_grammar") - F("commands_with_form")
     categories = TaskCategory.objects.filter(commands_in_grammar__isnull=False)
     counted["uncovered"] = _aggregate(categories, "grammar__world", Sum(without_form))
     counted["stale"] = Case(When(generated_revision__lt=F("revision"), then=1), default=0)
-    columns = {f"n_{field.name}": counted[field.name] for field in fields(Counts)}
+    counted["generations"] = F("generations")
+    ended = Job.objects.filter(world=OuterRef("pk"), finished_at__isnull=False).order_by("-id")
+    counted["job"] = Coalesce(Subquery(ended.values("id")[:1]), 0)
+    free = WorkItem.objects.free().filter(world=OuterRef("pk")).order_by("-priority", "id")
+    some_free = free.values("pk")[:MOST_EXACT]
+    counted["some_free"] = Subquery(
+        some_free,
+        output_field=IntegerField(),
+        template="(SELECT COUNT(*) FROM (%(subquery)s) AS some_free)",
+    )
+    return _statement(counted)
+
+
+@cache
+def _large_statement() -> tuple[str, tuple[Any, ...]]:
+    """Return the query that counts for every world what there may be very much of: the key, then ``LARGE``."""
+    rows = _rows_to_count()
+    return _statement({name: _aggregate(*rows[name], Count("pk")) for name in LARGE})
+
+
+def _statement(
+    counted: Mapping[str, Expression | F | Subquery[Any]],
+) -> tuple[str, tuple[Any, ...]]:
+    columns = {f"n_{name}": expression for name, expression in counted.items()}
     rows = World.objects.order_by().annotate(**columns).values("id", *columns)
     statement: tuple[str, tuple[Any, ...]] = rows.query.sql_with_params()
     return statement

@@ -12,8 +12,9 @@ from django.http import HttpRequest
 from django.urls import reverse
 from django.utils.functional import SimpleLazyObject
 
+from annotations.language.texts import say_count
 from annotations.models import Duty, Notice, World
-from gpsr_site.overview.counts import Counts, counts_of
+from gpsr_site.overview.counts import LARGE, Counts, counts_of
 from gpsr_site.overview.workers import workers_now
 from gpsr_site.pages.rail import GROUPS, RailEntry, way_to
 
@@ -22,13 +23,15 @@ CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the re
 
 @dataclass(frozen=True, slots=True)
 class RailLink:
-    """A ``RailEntry`` as the rail or a row of tabs draws it; ``dot`` says what waits there."""
+    """A ``RailEntry`` as the rail or a row of tabs draws it; ``dot`` says what waits there, and ``counted`` how long
+    ago ``count`` was counted, where that is minutes."""
 
     label: str
     url: str
     count: int | None
     dot: str
     is_current: bool
+    counted: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,12 +120,14 @@ def _link(
     entry: RailEntry, world: World, counts: Counts, is_current: bool, is_tab: bool = False
 ) -> RailLink:
     waiting = entry.waiting_here if is_tab else entry.sentence
+    minutes = int(counts.age / 60) if entry.count in LARGE else 0
     return RailLink(
         label=entry.label,
         url=_url_of(world, entry),
         count=getattr(counts, entry.count) if entry.count else None,
         dot=waiting(counts),
         is_current=is_current,
+        counted=f"counted {say_count(minutes, 'minute')} ago" if minutes else "",
     )
 
 
