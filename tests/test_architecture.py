@@ -44,7 +44,7 @@ ROOMS = {
         "labelling", "campaigns", "web", "templatetags", "management",
     ),
     "annotations/language": (
-        "texts", "forms", "grammar", "world", "grounding", "templates", "corpus", "plans",
+        "texts", "forms", "grammar", "world", "grounding", "templates", "induction", "corpus", "plans",
     ),
     "annotations/web": (
         "rest", "editing", "worlds", "corpus", "description", "labelling", "people", "campaigns",

@@ -82,8 +82,9 @@ def test_every_management_command_is_documented():
 
 
 def links_of(page: Path) -> set[tuple[Path, str]]:
-    """Return what a page links to: a file, and the heading in it or nothing."""
-    targets = LINK.findall(page.read_text(encoding="utf-8"))
+    """Return what a page links to, outside its code: a file, and the heading in it or nothing."""
+    text = re.sub(r"^    .*$|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    targets = LINK.findall(text)
     return {
         ((page.parent / path).resolve() if path else page, heading) for path, heading in targets
     }

@@ -1,0 +1,208 @@
+"""Read and write commands as people give them for an example: what may change stands in brackets.
+
+    water the [tomatoes] in [bed two]
+    irrigate the [roses](plant) = water
+
+A class may stand behind a mark, in parentheses, as in the training files of Rasa. Behind an equals sign stands what
+the command means: the name of its predicate, or its whole form with the marked texts as constants.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from annotations.language.forms import Form, read_form, require_token, to_template
+from annotations.language.texts import (
+    COURTESY_CLOSINGS,
+    COURTESY_OPENINGS,
+    MAX_ENTITY,
+    MAX_PREDICATE,
+    LanguageError,
+    Position,
+    Problem,
+    error_at,
+    normalise_line,
+    require_length,
+    require_name,
+)
+
+MOST_LINES = 500
+MOST_CHARACTERS = 500  # of one line
+EXAMPLE = "water the [tomatoes] in [bed two]"
+
+_MARK = re.compile(r"\[(?P<text>[^\[\]]*)\](?:\((?P<token>[^()]*)\))?|[^\s\[\]]+|[\[\]]")
+_WORD = re.compile(r"[^\s,.;:!?\"“”]+|,")
+_NAME = re.compile(r"[a-z]\w*")
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """What may change in a command; ``entity_class`` is empty where nobody has said it."""
+
+    text: str
+    entity_class: str = ""
+
+    def __str__(self) -> str:
+        return f"[{self.text}]({self.entity_class})" if self.entity_class else f"[{self.text}]"
+
+
+Part: TypeAlias = "str | Mark"
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A command: its words and marks in order, without what is said out of courtesy, and what it means.
+
+    ``action`` is the name of its predicate and ``form`` its whole form; both are empty where nobody has said so.
+    ``line`` counts from 1.
+    """
+
+    parts: tuple[Part, ...]
+    action: str = ""
+    form: Form | None = None
+    line: int = 1
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        return tuple(part for part in self.parts if isinstance(part, Mark))
+
+    @property
+    def text(self) -> str:
+        """The command as one says it."""
+        words = (part.text if isinstance(part, Mark) else part for part in self.parts)
+        return " ".join(words).replace(" ,", ",")
+
+    def __str__(self) -> str:
+        meaning = to_template(self.form) if self.form is not None else self.action
+        said = " ".join(map(str, self.parts)).replace(" ,", ",")
+        return f"{said} = {meaning}" if meaning else said
+
+
+def read_examples(text: str) -> tuple[tuple[Example, ...], tuple[Problem, ...]]:
+    """Read the lines of a text. Empty ones and comments (``#``) are left out, equal ones are read once.
+
+    Returns:
+        The examples, and what is wrong with the lines that are none.
+    """
+    examples: dict[str, Example] = {}
+    problems: list[Problem] = []
+    lines = text.splitlines()
+    for number, line in enumerate(lines[:MOST_LINES], start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            try:
+                example = read_example(line, Position(line=number))
+            except LanguageError as error:
+                problems.append(error.problem)
+            else:
+                examples.setdefault(str(example), example)
+    if len(lines) > MOST_LINES:
+        place = Position(line=MOST_LINES + 1)
+        message, hint = (
+            f"there are {len(lines):,} lines",
+            f"{MOST_LINES} are the limit; store these",
+        )
+        problems.append(error_at(place, message, hint))
+    return tuple(examples.values()), tuple(problems)
+
+
+def read_example(line: str, position: Position | None = None) -> Example:
+    """Read one line.
+
+    Raises:
+        LanguageError: a bracket without its partner, an empty mark, a class that is no token, a meaning that is neither
+            a name nor a form, or nothing that is said.
+    """
+    place = position or Position()
+    require_length(line, "line", MOST_CHARACTERS, place)
+    line = normalise_line(line)
+    said, equals, meaning = line.partition(" = ")
+    parts = tuple(_parts(said, place))
+    if all(part == "," for part in parts):
+        raise LanguageError("the line says nothing", place, f"write a command, as in: {EXAMPLE}")
+    example = Example(_without_courtesy(parts), line=place.line)
+    return (
+        _with_meaning(example, meaning.strip(), place.shifted(len(said) + 3)) if equals else example
+    )
+
+
+def _parts(said: str, place: Position) -> Iterator[Part]:
+    for match in _MARK.finditer(said):
+        here = place.shifted(match.start())
+        if match["text"] is not None:
+            text, token = " ".join(match["text"].split()), (match["token"] or "").strip()
+            if not text:
+                raise LanguageError("the brackets are empty", here, "write what may change in them")
+            require_length(text, "text of a mark", MAX_ENTITY, here)
+            if token:
+                _require_class(token, here)
+            yield Mark(text, token)
+        elif match[0] in "[]":
+            raise LanguageError(
+                "a bracket has no partner", here, f"mark what may change, as in: {EXAMPLE}"
+            )
+        else:
+            yield from _WORD.findall(match[0])
+
+
+def _require_class(token: str, place: Position) -> None:
+    try:
+        require_token(token)
+    except LanguageError as error:
+        raise LanguageError(error.message, place, error.hint) from None
+
+
+def _with_meaning(example: Example, meaning: str, place: Position) -> Example:
+    if meaning.startswith("("):
+        return replace(example, form=read_form(meaning, place))
+    if not _NAME.fullmatch(meaning):
+        raise LanguageError(
+            f"{meaning[:40] or 'nothing'} is no name of what to do",
+            place,
+            "write one word behind the equals sign, such as water, or a form in parentheses",
+        )
+    require_name(meaning, "predicate", MAX_PREDICATE, place)
+    return replace(example, action=meaning)
+
+
+_OPENINGS, _CLOSINGS = (
+    sorted((phrase.split() for phrase in phrases), key=len, reverse=True)
+    for phrases in (COURTESY_OPENINGS, COURTESY_CLOSINGS)
+)
+
+
+def _without_courtesy(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Return the parts without "please" and the like around them; all where nothing else is said."""
+    left = list(parts)
+    while phrase := _at_end(left, _OPENINGS, begins=True):
+        left = left[len(phrase) :]
+    while phrase := _at_end(left, _CLOSINGS, begins=False):
+        left = left[: -len(phrase)]
+    if left and isinstance(left[0], str) and left[0] != "I" and left[0].istitle():
+        left[0] = left[0].lower()
+    return tuple(left) or parts
+
+
+def _at_end(parts: list[Part], phrases: Iterable[list[str]], begins: bool) -> list[str]:
+    """Return the phrase that ``parts`` begin or end with, or the comma there; empty where there is none."""
+    for phrase in ([","], *phrases):
+        there = parts[: len(phrase)] if begins else parts[-len(phrase) :]
+        if [each.lower() if isinstance(each, str) else each for each in there] == phrase:
+            return phrase
+    return []
+
+
+def rewritten(text: str, change: Callable[[Example], Example]) -> str:
+    """Return a text of lines with those changed whose example ``change`` makes another; all others stay as they are."""
+    lines = text.splitlines()
+    for number, line in enumerate(lines):
+        try:
+            example = read_example(line, Position(line=number + 1))
+        except LanguageError:
+            continue
+        changed = change(example)
+        if changed != example:
+            lines[number] = str(changed)
+    return "\n".join(lines)

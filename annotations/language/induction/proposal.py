@@ -1,0 +1,419 @@
+"""Propose a world from what people say: classes, entities, predicates, words that vary, and templates.
+
+The program follows alignment-based learning (van Zaanen, COLING 2000), made synchronous by the forms: see
+``synonyms`` and ``analogies``. It generalises carefully. Commands with other verbs are other predicates, until somebody
+gives them one name; what only one pair of commands speaks for is offered and not taken.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations
+
+from annotations.language.forms import (
+    Application,
+    Constant,
+    Form,
+    Lambda,
+    Nonterminal,
+    Text,
+    Wildcard,
+    head_predicate,
+    print_sequence,
+    to_template,
+)
+from annotations.language.induction.actions import Action, ArgumentOrder, orders_of, read_action
+from annotations.language.induction.analogies import Derived, derive
+from annotations.language.induction.classes import (
+    MarkedClass,
+    MarkedPlace,
+    classes_of,
+    folded,
+)
+from annotations.language.induction.clauses import clauses_of
+from annotations.language.induction.marked_lines import (
+    Example,
+    Mark,
+    Part,
+    read_examples,
+    rewritten,
+)
+from annotations.language.induction.offers import Offer, offers_for
+from annotations.language.induction.rules import (
+    Rule,
+    Words,
+    differences,
+    is_slot,
+)
+from annotations.language.induction.synonyms import Synonyms, find_synonyms, with_nonterminals
+from annotations.language.texts import ARTICLES, DETERMINERS, MAX_GLOSS, Problem
+from annotations.language.world import Predicate, PredicateKind, signature_of
+
+_ANY = "<>"  # a slot whose class is not known yet
+
+
+@dataclass(frozen=True)
+class KnownWorld:
+    """What a world has already.
+
+    ``texts`` are what its entities are called, folded, with their class; ``rules`` its templates without nonterminals;
+    ``nonterminals`` the names that its grammar has.
+    """
+
+    texts: Mapping[str, str] = field(default_factory=dict)
+    predicates: Mapping[str, Predicate] = field(default_factory=dict)
+    rules: tuple[Rule, ...] = ()
+    nonterminals: frozenset[str] = frozenset()
+
+    @cached_property
+    def orders(self) -> tuple[ArgumentOrder, ...]:
+        """The roles of the arguments of its predicates, as the words of its templates say them."""
+        orders: dict[str, ArgumentOrder] = {}
+        for rule in sorted(self.rules, key=lambda each: len(each.words)):
+            roles = _roles_in_order(rule)
+            if roles is not None:
+                order = orders.setdefault(
+                    head_predicate(rule.form), ArgumentOrder(head_predicate(rule.form))
+                )
+                if order.takes(frozenset(roles)):
+                    order.add(roles)
+        return tuple(orders.values())
+
+    @cached_property
+    def verbs(self) -> Mapping[str, str]:
+        """The predicate that the words of a command name, where all templates with these words agree."""
+        names: defaultdict[str, set[str]] = defaultdict(set)
+        for rule in self.rules:
+            names[read_action(rule.words).name].add(head_predicate(rule.form))
+        return {name: min(heads) for name, heads in names.items() if len(heads) == 1}
+
+    @cached_property
+    def roles(self) -> Mapping[tuple[str, str], str]:
+        """The class of a role of a predicate."""
+        found: dict[tuple[str, str], str] = {}
+        for rule in self.rules:
+            for role, token in zip(
+                read_action(rule.words).roles, filter(is_slot, rule.words), strict=True
+            ):
+                found.setdefault((head_predicate(rule.form), role), token[1:-1])
+        return found
+
+
+def _roles_in_order(rule: Rule) -> list[str] | None:
+    """Return the roles of a rule in the order of the arguments; None where its arguments are not its slots."""
+    roles = read_action(rule.words).roles
+    form = rule.form
+    if not isinstance(form, Application):
+        return None
+    numbers = [each.id for each in form.arguments if isinstance(each, Wildcard) and each.id]
+    if len(numbers) != len(form.arguments) or sorted(numbers) != list(range(1, len(roles) + 1)):
+        return None
+    return [roles[number - 1] for number in numbers]
+
+
+@dataclass(frozen=True, slots=True)
+class ProposedPredicate:
+    """A predicate, the lines that show it, and whether somebody has said its name."""
+
+    predicate: Predicate
+    lines: tuple[int, ...]
+    is_named: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ProposedTemplate:
+    """``pattern = form``, from lines; ``derived`` says what it follows from where nobody has said it."""
+
+    rule: Rule
+    lines: tuple[int, ...] = ()
+    derived: Derived | None = None
+
+    @property
+    def pattern(self) -> str:
+        return print_sequence(tuple(self._symbols()))
+
+    @property
+    def form(self) -> str:
+        return to_template(self._slots_as_written(self.rule.form))
+
+    def _symbols(self) -> Iterator[Text | Nonterminal | Wildcard]:
+        number = 0
+        for word in self.rule.words:
+            if is_slot(word):
+                number += 1
+                yield self._wildcard(word[1:-1], number)
+            else:
+                yield Nonterminal(word[1:]) if word.startswith("$") else Text(word)
+
+    def _wildcard(self, token: str, number: int) -> Wildcard:
+        return Wildcard(token, id=number if self.rule.words.count(f"<{token}>") > 1 else None)
+
+    def _slots_as_written(self, form: Form) -> Form:
+        match form:
+            case Wildcard(name=name, id=number) if number is not None:
+                return self._wildcard(name, number)
+            case Lambda(variable, type_, bodies):
+                return Lambda(variable, type_, tuple(map(self._slots_as_written, bodies)))
+            case Application(predicate, arguments):
+                return Application(predicate, tuple(map(self._slots_as_written, arguments)))
+            case _:
+                return form
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """What only a person can say: whether two classes, or two predicates, are one. ``kind`` is class or predicate."""
+
+    kind: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What the lines make. Classes and predicates that the world has are among them where lines use them."""
+
+    examples: tuple[Example, ...]
+    problems: tuple[Problem, ...]
+    classes: tuple[MarkedClass, ...]
+    predicates: tuple[ProposedPredicate, ...]
+    synonyms: tuple[Synonyms, ...]
+    templates: tuple[ProposedTemplate, ...]
+    offers: tuple[Offer, ...]
+    doubts: tuple[Doubt, ...]
+    tokens: Mapping[Mark, str]
+    predicates_of_lines: Mapping[int, tuple[str, ...]]
+
+
+def propose(text: str, known: KnownWorld | None = None) -> Proposal:
+    """Return what follows from the lines of a text.
+
+    Args:
+        text: examples, a line each, as ``read_examples`` reads them.
+        known: what is there already.
+    """
+    known = known or KnownWorld()
+    examples, problems = read_examples(text)
+    clauses = [
+        _Clause(example, parts, known) for example in examples for parts in clauses_of(example)
+    ]
+    orders = orders_of((each.action for each in clauses), known.orders)
+    places = tuple(
+        MarkedPlace(mark, orders[each.action].name, role, each.example.line)
+        for each in clauses
+        for mark, role in zip(each.marks, each.action.roles, strict=True)
+    )
+    tokens, classes = classes_of(places, known.texts, known.roles)
+    lines: dict[Rule, list[int]] = {}
+    alike: dict[tuple[Words, Form], Rule] = {}
+    for each in clauses:
+        rule = each.rule(orders[each.action], tokens)
+        # With and without an article is one: the oracle passes over them.
+        first = alike.setdefault((_without_articles(rule.words), rule.form), rule)
+        lines.setdefault(first, []).append(each.example.line)
+    rules, synonyms = find_synonyms(tuple(lines))
+    synonyms, rules = _renamed(synonyms, tuple(lines), known.nonterminals)
+    of_rule: defaultdict[Rule, list[int]] = defaultdict(list)
+    for rule, where in lines.items():
+        of_rule[with_nonterminals(rule, synonyms)] += where
+    templates = [ProposedTemplate(rule, tuple(sorted(set(of_rule[rule])))) for rule in rules]
+    analogies = derive(rules)
+    templates += [ProposedTemplate(each.rule, derived=each) for each in analogies if each.is_sure]
+    used: defaultdict[str, list[int]] = defaultdict(list)
+    of_lines: defaultdict[int, list[str]] = defaultdict(list)
+    for each in clauses:
+        head = head_predicate(each.rule(orders[each.action], tokens).form)
+        used[head].append(each.example.line)
+        of_lines[each.example.line].append(head)
+    named = {each.example.action for each in clauses} | known.predicates.keys()
+    predicates = tuple(
+        ProposedPredicate(
+            _predicate(name, [rule for rule in lines if head_predicate(rule.form) == name], known),
+            tuple(sorted(set(where))),
+            name in named,
+        )
+        for name, where in used.items()
+    )
+    return Proposal(
+        examples,
+        problems,
+        classes,
+        predicates,
+        synonyms,
+        tuple(templates),
+        offers_for(tuple(lines), analogies, {each.token: each.texts for each in classes}),
+        tuple(_doubts(predicates, classes, tuple(lines), named, places)),
+        tokens,
+        {line: tuple(dict.fromkeys(names)) for line, names in of_lines.items()},
+    )
+
+
+def _without_articles(words: Words) -> Words:
+    return tuple(word for word in words if word.lower() not in ARTICLES)
+
+
+@dataclass(frozen=True)
+class _Clause:
+    example: Example
+    parts: tuple[Part, ...]
+    known: KnownWorld
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        return tuple(part for part in self.parts if isinstance(part, Mark))
+
+    @cached_property
+    def action(self) -> Action:
+        read = read_action(tuple(_ANY if isinstance(part, Mark) else part for part in self.parts))
+        if self.example.form is not None:
+            return replace(read, name=head_predicate(self.example.form))
+        name = self.example.action or self.known.verbs.get(read.name, read.name)
+        return replace(read, name=name)
+
+    def rule(self, order: ArgumentOrder, tokens: Mapping[Mark, str]) -> Rule:
+        words = tuple(
+            f"<{tokens[part]}>" if isinstance(part, Mark) else part for part in self.parts
+        )
+        slots = [
+            Wildcard(tokens[mark], id=number) for number, mark in enumerate(self.marks, start=1)
+        ]
+        if self.example.form is not None:
+            texts = {folded(mark.text): slot for mark, slot in zip(self.marks, slots, strict=True)}
+            return Rule(words, _with_slots(self.example.form, texts))
+        by_role = dict(zip(self.action.roles, slots, strict=True))
+        arguments = tuple(by_role[role] for role in order.roles if role in by_role)
+        return Rule(words, Application(order.name, arguments))
+
+
+def _with_slots(form: Form, texts: Mapping[str, Wildcard]) -> Form:
+    """Return the form with the slots of the marked texts in place of the constants that name them."""
+    match form:
+        case Constant(value=str(value)):
+            return texts.get(folded(value), form)
+        case Lambda(variable, type_, bodies):
+            return Lambda(variable, type_, tuple(_with_slots(each, texts) for each in bodies))
+        case Application(predicate, arguments):
+            return Application(predicate, tuple(_with_slots(each, texts) for each in arguments))
+        case _:
+            return form
+
+
+def _renamed(
+    synonyms: Sequence[Synonyms], rules: Sequence[Rule], taken: frozenset[str]
+) -> tuple[tuple[Synonyms, ...], tuple[Rule, ...]]:
+    """Return the synonyms under names that the grammar does not have yet, and the rules written with them."""
+    used = set(taken)
+    renamed: list[Synonyms] = []
+    for each in synonyms:
+        numbered = (f"{each.name}{n}" for n in range(2, 100_000))
+        name = each.name if each.name not in used else next(n for n in numbered if n not in used)
+        used.add(name)
+        renamed.append(replace(each, name=name))
+    written = dict.fromkeys(with_nonterminals(rule, renamed) for rule in rules)
+    return tuple(renamed), tuple(written)
+
+
+def _predicate(name: str, rules: Sequence[Rule], known: KnownWorld) -> Predicate:
+    """Return a predicate with the signatures that the rules use, and how they say it in English."""
+    own = known.predicates.get(name)
+    uses = {signature_of(each.form) for each in rules if isinstance(each.form, Application)}
+    if own is not None:
+        return replace(own, signatures=tuple(sorted({*own.signatures, *uses})))
+    said: dict[int, str] = {}
+    for rule in sorted(rules, key=lambda each: len(each.words)):
+        form = rule.form
+        if isinstance(form, Application) and all(
+            isinstance(each, Wildcard) for each in form.arguments
+        ):
+            said.setdefault(len(form.arguments), _gloss(rule, form))
+    gloss = " | ".join(said.values())
+    return Predicate(
+        name, PredicateKind.ACTION, tuple(sorted(uses)), gloss if len(gloss) <= MAX_GLOSS else ""
+    )
+
+
+def _gloss(rule: Rule, form: Application) -> str:
+    """Return the words of a rule with the places of its arguments: ``water {1} in {2}``."""
+    numbers = [each.id for each in form.arguments if isinstance(each, Wildcard)]
+    words: list[str] = []
+    slot = 0
+    for word in rule.words:
+        if is_slot(word):
+            slot += 1
+            if words and words[-1].lower() in DETERMINERS:
+                words.pop()
+            words.append(f"{{{numbers.index(slot) + 1}}}")
+        elif word != ",":
+            words.append(word)
+    return " ".join(words)
+
+
+def _doubts(
+    predicates: Sequence[ProposedPredicate],
+    classes: Sequence[MarkedClass],
+    rules: Sequence[Rule],
+    named: Iterable[str],
+    places: Sequence[MarkedPlace],
+) -> Iterator[Doubt]:
+    """Yield what may be one: predicates whose commands differ in their verb alone, classes behind one preposition."""
+    new = {each.predicate.name for each in predicates} - set(named)
+    seen: set[frozenset[str]] = set()
+    for left, right in combinations(rules, 2):
+        pair = frozenset(head_predicate(each.form) for each in (left, right))
+        if (
+            len(pair) == 2
+            and pair & new
+            and pair not in seen
+            and _differ_in_verb(left.words, right.words)
+        ):
+            seen.add(pair)
+            yield Doubt("predicate", head_predicate(left.form), head_predicate(right.form))
+    roles: defaultdict[str, dict[str, None]] = defaultdict(dict)
+    token_of = {text: each.token for each in classes for text in each.texts}
+    for place in places:
+        if place.role:
+            roles[place.role].setdefault(token_of[place.mark.text])
+    unnamed = {each.token for each in classes if not each.is_named}
+    for tokens in roles.values():
+        for first, second in combinations(tokens, 2):
+            if {first, second} & unnamed and frozenset((first, second)) not in seen:
+                seen.add(frozenset((first, second)))
+                yield Doubt("class", first, second)
+
+
+def _differ_in_verb(left: Words, right: Words) -> bool:
+    found = differences(left, right)
+    return (
+        len(found) == 1
+        and found[0].start == found[0].other_start == 0
+        and not any(map(is_slot, (*found[0].old, *found[0].new)))
+    )
+
+
+def with_class_named(text: str, proposal: Proposal, token: str, name: str) -> str:
+    """Return the lines with ``name`` behind each mark of the class ``token`` of their proposal."""
+
+    def change(example: Example) -> Example:
+        parts = (
+            replace(part, entity_class=name)
+            if isinstance(part, Mark) and proposal.tokens.get(part) == token
+            else part
+            for part in example.parts
+        )
+        return replace(example, parts=tuple(parts))
+
+    return rewritten(text, change)
+
+
+def with_predicate_named(text: str, proposal: Proposal, predicate: str, name: str) -> str:
+    """Return the lines with ``= name`` behind each command of a predicate; those of several commands stay."""
+
+    def change(example: Example) -> Example:
+        is_of_it = proposal.predicates_of_lines.get(example.line) == (predicate,)
+        one = len(clauses_of(example)) == 1 and example.form is None
+        return replace(example, action=name) if is_of_it and one else example
+
+    return rewritten(text, change)

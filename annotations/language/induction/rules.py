@@ -1,0 +1,95 @@
+"""Rules: the words of a command with slots, and its form; what one rule has where another has something else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import TypeAlias
+
+from annotations.language.forms import Application, Form, Lambda, Wildcard
+from annotations.language.texts import ARTICLES, BOUNDARIES, LIGHT_WORDS, PRONOUNS
+
+Words: TypeAlias = "tuple[str, ...]"
+
+_SAYS_NOTHING = frozenset((*ARTICLES, *BOUNDARIES, *LIGHT_WORDS, *PRONOUNS, "yourself", ","))
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Words with slots, such as ``water the <plant>``, and their form.
+
+    Slot n of the words, counted from 1, is the wildcard with the number n in the form. A word may be a nonterminal,
+    ``$water``.
+    """
+
+    words: Words
+    form: Form
+
+    def __str__(self) -> str:
+        return " ".join(self.words)
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Where two rules differ: ``old`` from ``start`` on in the words of the one is ``new`` in those of the other."""
+
+    start: int
+    old: Words
+    other_start: int
+    new: Words
+
+
+def is_slot(word: str) -> bool:
+    return word.startswith("<")
+
+
+def count_slots(words: Iterable[str]) -> int:
+    return sum(map(is_slot, words))
+
+
+def says_something(word: str) -> bool:
+    """Return whether a word is a slot, or neither article, preposition, pronoun nor light verb."""
+    return word.lower() not in _SAYS_NOTHING
+
+
+def differences(left: Words, right: Words) -> tuple[Difference, ...]:
+    """Return the places where two sequences differ, in order, around what they share in that order."""
+    opcodes = SequenceMatcher(None, left, right, autojunk=False).get_opcodes()
+    return tuple(
+        Difference(start, left[start:end], other, right[other:other_end])
+        for tag, start, end, other, other_end in opcodes
+        if tag != "equal"
+    )
+
+
+def slots_shared(left: Words, right: Words) -> dict[int, int]:
+    """Return for the slots of ``right`` those of ``left`` that stand in the same places, outside all differences."""
+    numbers: dict[int, int] = {}
+    blocks = SequenceMatcher(None, left, right, autojunk=False).get_matching_blocks()
+    for start, other, length in blocks:
+        mine, its = count_slots(left[:start]), count_slots(right[:other])
+        shared = count_slots(left[start : start + length])
+        numbers |= {its + n: mine + n for n in range(1, shared + 1)}
+    return numbers
+
+
+def renumbered(form: Form, numbers: Mapping[int, int]) -> Form:
+    """Return the form with other numbers for its slots; those that ``numbers`` lacks stay."""
+    match form:
+        case Wildcard(name=name, id=number) if number is not None:
+            return Wildcard(name, id=numbers.get(number, number))
+        case Lambda(variable, type_, bodies):
+            return Lambda(variable, type_, tuple(renumbered(each, numbers) for each in bodies))
+        case Application(predicate, arguments):
+            return Application(predicate, tuple(renumbered(each, numbers) for each in arguments))
+        case _:
+            return form
+
+
+def mean_the_same(left: Rule, right: Rule) -> bool:
+    """Return whether two rules have one form, up to the numbers of the slots that stand in the same places."""
+    if count_slots(left.words) != count_slots(right.words):
+        return False
+    shared = slots_shared(left.words, right.words)
+    return len(shared) == count_slots(right.words) and left.form == renumbered(right.form, shared)

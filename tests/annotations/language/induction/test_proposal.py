@@ -1,0 +1,155 @@
+"""Proposals: what lines make, what is left for a person to say, and that the oracle understands the lines by them."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from annotations.language.forms import Application, Wildcard, canonical_text
+from annotations.language.induction import (
+    KnownWorld,
+    Mark,
+    OfferKind,
+    Proposal,
+    Rule,
+    propose,
+    read_example,
+    with_class_named,
+    with_predicate_named,
+)
+from annotations.language.world import PredicateKind
+from benchmarks.language.induction import grounded, oracle_of
+
+GREENHOUSE = """
+water the [tomatoes](plant) in [bed two](bed)
+water the [roses]
+prune the [roses] with the [shears](tool)
+go to the [shed](place)
+take the [shears] and bring them to the [shed]
+turn off the [lamp](device)
+"""
+
+
+def signatures(proposal: Proposal) -> dict[str, list[str]]:
+    return {
+        each.predicate.name: [str(signature) for signature in each.predicate.signatures]
+        for each in proposal.predicates
+    }
+
+
+def test_a_greenhouse_is_proposed() -> None:
+    proposal = propose(GREENHOUSE)
+    assert {each.token: each.texts for each in proposal.classes} == {
+        "plant": ("tomatoes", "roses"),
+        "bed": ("bed two",),
+        "tool": ("shears",),
+        "place": ("shed",),
+        "device": ("lamp",),
+    }
+    assert signatures(proposal) == {
+        "water": ["(plant)", "(plant, bed)"],
+        "prune": ["(plant, tool)"],
+        "go": ["(place)"],
+        "take": ["(tool)"],
+        "bring": ["(tool, place)"],
+        "turn_off": ["(device)"],
+    }
+    assert all(each.predicate.kind is PredicateKind.ACTION for each in proposal.predicates)
+    glosses = {each.predicate.name: each.predicate.gloss for each in proposal.predicates}
+    assert glosses["water"] == "water {1} | water {1} in {2}"
+    templates = {each.pattern: each.form for each in proposal.templates}
+    assert templates["bring the {tool} to the {place}"] == "(bring {tool} {place})"
+
+
+def test_other_verbs_are_one_predicate_only_when_somebody_says_so() -> None:
+    lines = "water the [roses] in [bed two]\nirrigate the [roses] in [bed two]"
+    apart = propose(lines)
+    assert signatures(apart).keys() == {"water", "irrigate"}
+    assert [(each.kind, each.first, each.second) for each in apart.doubts] == [
+        ("predicate", "water", "irrigate")
+    ]
+    joined = propose(with_predicate_named(lines, apart, "irrigate", "water"))
+    assert signatures(joined).keys() == {"water"}
+    assert [each.phrases for each in joined.synonyms] == [(("water",), ("irrigate",))]
+    assert len(joined.templates) == 1
+
+
+def test_roles_that_take_one_anothers_place_are_predicates_of_their_own() -> None:
+    lines = "bring [the hose]\nbring [the hose] to [bed two]\nbring [the hose] from [bed two]"
+    assert signatures(propose(lines)).keys() == {"bring", "bring_from"}
+
+
+def test_naming_a_class_names_all_its_marks_and_no_other() -> None:
+    lines = "water the [roses]\nwater the [tulips]\ngo to the [shed]"
+    proposal = propose(lines)
+    token = proposal.tokens[Mark("roses")]
+    named = with_class_named(lines, proposal, token, "plant")
+    assert named == "water the [roses](plant)\nwater the [tulips](plant)\ngo to the [shed]"
+
+
+def test_marks_of_different_named_classes_stay_apart() -> None:
+    proposal = propose("go to the [shed](place)\ngo to the [roses](plant)\ngo to the [tulips]")
+    assert {each.token for each in proposal.classes} >= {"place", "plant"}
+
+
+def test_a_form_may_be_given() -> None:
+    proposal = propose('bring the [hose](tool) = (bring (λ$1:e (is_a $1 "hose")))')
+    assert [each.form for each in proposal.templates] == ["(bring (λ$1:e (is_a $1 {tool})))"]
+
+
+def test_offers_are_lines_that_can_be_taken() -> None:
+    proposal = propose(GREENHOUSE + "unload the [van](device) at the [shed]")
+    lines = {each.kind: each.line for each in proposal.offers}
+    assert lines.keys() >= {OfferKind.ORDER, OfferKind.WORDING}
+    taken = propose("\n".join([GREENHOUSE, *(each.line for each in proposal.offers)]))
+    assert not taken.problems
+    assert signatures(taken).keys() >= signatures(proposal).keys()
+
+
+def test_what_the_world_has_is_used() -> None:
+    form = Application("water", (Wildcard("plant", id=1), Wildcard("bed", id=2)))
+    known = KnownWorld(
+        texts={"rose": "plant"},
+        rules=(Rule(("irrigate", "the", "<plant>", "in", "<bed>"), form),),
+        nonterminals=frozenset(("hose",)),
+    )
+    lines = "irrigate the [roses] in the [north wall]\nhose the [roses]\nspray the [roses] = hose"
+    proposal = propose(lines, known)
+    assert {each.token for each in proposal.classes} == {"plant", "bed"}
+    assert signatures(proposal).keys() == {"water", "hose"}
+    assert [each.name for each in proposal.synonyms] == ["hose2"]
+
+
+PLANTS, BEDS = ["roses", "tomatoes", "old oak"], ["bed two", "bed three", "the north wall"]
+VERBS = st.sampled_from(["water", "prune", "inspect", "cover up"])
+
+
+@st.composite
+def lines(draw: st.DrawFn) -> str:
+    verb, plant = draw(VERBS), draw(st.sampled_from(PLANTS))
+    place = draw(st.sampled_from([None, *BEDS]))
+    preposition = draw(st.sampled_from(["in", "near"]))
+    behind = f" {preposition} [{place}](bed)" if place else ""
+    return f"{verb} the [{plant}](plant){behind}"
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(lines(), min_size=1, max_size=6, unique=True))
+def test_the_oracle_of_a_proposal_understands_every_line(written: list[str]) -> None:
+    proposal = propose("\n".join(written))
+    oracle = oracle_of(proposal)
+    for line in written:
+        example = read_example(line)
+        (candidate, *_) = oracle.predict([example.text])[0]
+        said = {Mark(each.text, each.entity_class).text for each in example.marks}
+        assert set(candidate.values) == said, (line, candidate)
+        form = grounded(candidate)
+        (head,) = proposal.predicates_of_lines[written.index(line) + 1]
+        assert canonical_text(form).split()[1] == head
+
+
+@pytest.mark.parametrize("line", ["stop", "[bed two]", "in the [bed]", "and", "[a] [b] [c]", "= "])
+def test_odd_lines_make_something_or_a_problem(line: str) -> None:
+    proposal = propose(line)
+    assert proposal.problems or proposal.templates
