@@ -230,7 +230,15 @@ TABLES_OF_ROWS = (
         utterance="item__utterance",
     ),
     ArchiveTable("work_shares", WorkShare, "world"),
-    ArchiveTable("splits", Split, "world", {"follows": "splits"}, people=("created_by",)),
+    # The figures of a split are counted again, with the check of its hash.
+    ArchiveTable(
+        "splits",
+        Split,
+        "world",
+        {"follows": "splits"},
+        people=("created_by",),
+        left_out=("figures",),
+    ),
     ArchiveTable("examples", Example, references={"split": "splits"}, keeps_texts=True),
     ArchiveTable("problems", StoredProblem, "world"),
 )

@@ -24,6 +24,7 @@ from annotations.exchange.target_world import require_world_name
 from annotations.exchange.world_deletion import delete_world
 from annotations.exchange.world_manifest import WorldManifest, read_manifest
 from annotations.generation.freezing import content_hash_of
+from annotations.generation.split_statistics import store_figures
 from annotations.language.forms import EntityClasses
 from annotations.language.texts import (
     LanguageError,
@@ -149,6 +150,7 @@ def _check_world(world: World) -> None:
     for split in Split.objects.filter(world=world):
         if content_hash_of(split) != split.content_hash:
             raise LanguageError(f"the pairs of the split {split} are not those that were frozen")
+        store_figures(split)
 
 
 class _Loader:

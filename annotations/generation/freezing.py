@@ -8,6 +8,7 @@ from typing import Any, Self
 from django.core.exceptions import ValidationError
 
 from annotations.background.progress import UNWATCHED, Progress
+from annotations.generation.split_statistics import figures_of_planned
 from annotations.language.corpus import (
     DEFAULT_PROPORTIONS,
     Criterion,
@@ -184,6 +185,7 @@ class PreparedSplit:
         self.tests_on_models = tests_on_models
         self.examples = sorted(examples, key=lambda each: (each.source, each.part, each.position))
         self.content_hash = content_hash(map(_freeze, self.examples))
+        self._figures = figures_of_planned(self.examples).as_json()
         self._staging = Staging(Example, self.COLUMNS)
 
     def __enter__(self) -> Self:
@@ -229,6 +231,7 @@ class PreparedSplit:
             tests_on_models=self.tests_on_models,
             sample=self._sample_of(world),
             content_hash=self.content_hash,
+            figures=self._figures,
             created_by=by,
         )
         self._staging.insert(split_id=str(int(created.pk)))

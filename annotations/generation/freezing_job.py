@@ -17,7 +17,7 @@ from annotations.generation.freezing import (
     unresolved_prompts,
 )
 from annotations.generation.renewing import freeze_anew, require_last
-from annotations.generation.split_statistics import counts_of_planned
+from annotations.generation.split_statistics import figures_of_planned
 from annotations.language.corpus import Criterion
 from annotations.language.texts import LanguageError
 from annotations.models import Job, JobKind, Split, User, World
@@ -59,7 +59,7 @@ def preview(world: World, **choice: Any) -> dict[str, Any]:
     planned = plan_split(world, **choice)
     is_by_prompt = choice["criterion"] == Criterion.SOURCE_COMMAND
     unresolved = unresolved_prompts(as_items(planned)).values() if is_by_prompt else ()
-    counts = [{**asdict(each), "total": each.total} for each in counts_of_planned(planned)]
+    counts = [{**asdict(each), "total": each.total} for each in figures_of_planned(planned).counts]
     return {"counts": counts, "unresolved": sorted(unresolved)}
 
 

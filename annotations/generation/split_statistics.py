@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-
-from django.db.models import Count
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Self
 
 from annotations.language.corpus import (
     MOST_COMPARISONS,
+    FormOverlap,
     Leak,
     NearDuplicates,
+    Overlap,
     Part,
     SplitItem,
     comparisons,
     near_duplicates,
+    overlap_of,
     shared,
+    together,
 )
 from annotations.language.texts import LanguageError
 from annotations.models import Example, Split
 from annotations.models.splits import Source
 
-KEPT_SPLITS = 64
+COLUMNS = ("part", "source", "utterance", "source_command", "logical_form")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,66 +43,129 @@ class PartCounts:
         return self.train + self.validation + self.test
 
 
-def counts_of(splits: Iterable[Split]) -> dict[int, list[PartCounts]]:
-    """Return key → the counts of each source that a split has. Two queries for all splits."""
-    examples = Example.objects.filter(split__in=splits).order_by()
-    sizes: dict[int, dict[tuple[str, str], int]] = defaultdict(dict)
-    for key, source, part, count in examples.values_list("split_id", "source", "part").annotate(
-        Count("pk")
-    ):
-        sizes[key][source, part] = count
-    forms = {
-        (key, source): count
-        for key, source, count in examples.values_list("split_id", "source").annotate(
-            Count("logical_form", distinct=True)
+@dataclass(frozen=True, slots=True)
+class SplitFigures:
+    """The figures of a split, which never change and are stored with it.
+
+    Attributes:
+        counts: of each source that it has.
+        leaks: what validation and test share with training, all sources together.
+        overlaps: by source what its validation part asks for, beside the training part.
+    """
+
+    counts: tuple[PartCounts, ...]
+    leaks: tuple[Leak, ...]
+    overlaps: Mapping[str, Overlap]
+
+    @property
+    def new_form_share(self) -> float:
+        """The share of the validation part, all sources together, whose forms no training pair has: of its forms
+        or of its pairs, whichever is larger."""
+        return together(self.overlaps.values()).new_form_share
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``from_json`` reads. Forms that as many pairs have are one row: what is stored stays small."""
+        return {
+            "counts": [asdict(each) for each in self.counts],
+            "leaks": [asdict(each) for each in self.leaks],
+            "overlaps": {
+                source: {
+                    "forms": [
+                        [form.asked, form.taught, times]
+                        for form, times in Counter(overlap.forms).items()
+                    ],
+                    "new_commands": overlap.new_commands,
+                }
+                for source, overlap in self.overlaps.items()
+            },
+        }
+
+    @classmethod
+    def from_json(cls, stored: Mapping[str, Any]) -> Self:
+        return cls(
+            tuple(PartCounts(**each) for each in stored["counts"]),
+            tuple(Leak(**each) for each in stored["leaks"]),
+            {
+                source: Overlap(
+                    tuple(
+                        FormOverlap(asked, taught)
+                        for asked, taught, times in overlap["forms"]
+                        for _ in range(times)
+                    ),
+                    overlap["new_commands"],
+                )
+                for source, overlap in stored["overlaps"].items()
+            },
         )
-    }
-    return {
-        split.pk: [
+
+
+def figures_of(split: Split) -> SplitFigures:
+    """Return the figures that are stored with ``split``; while it has none, its examples are counted."""
+    return SplitFigures.from_json(split.figures) if split.figures else _counted(split)
+
+
+def store_figures(split: Any) -> None:
+    """Count the examples of ``split`` and store its figures. Migrations call it with rows of theirs."""
+    split.figures = _counted(split).as_json()
+    split.save(update_fields=["figures"])
+
+
+def _counted(split: Any) -> SplitFigures:
+    rows = split.examples.order_by("pk").values_list(*COLUMNS)
+    return count_examples(rows.iterator(chunk_size=5000))
+
+
+def figures_of_planned(examples: Iterable[Example]) -> SplitFigures:
+    """Return the figures of examples that are not stored."""
+    return count_examples(tuple(getattr(each, name) for name in COLUMNS) for each in examples)
+
+
+def count_examples(rows: Iterable[Sequence[str]]) -> SplitFigures:
+    """Return the figures of examples, each the texts of ``COLUMNS``."""
+    parts: dict[str, list[SplitItem]] = {part: [] for part in Part}
+    for part, *texts in rows:
+        parts[part].append(SplitItem(*texts))
+    sizes = Counter((item.source, part) for part, items in parts.items() for item in items)
+    pairs = {(item.source, item.logical_form) for items in parts.values() for item in items}
+    forms = Counter(source for source, _ in pairs)
+    train = parts[Part.TRAIN]
+    return SplitFigures(
+        tuple(
             PartCounts(
                 source,
-                sizes[split.pk].get((source, Part.TRAIN), 0),
-                sizes[split.pk].get((source, Part.VALIDATION), 0),
-                sizes[split.pk].get((source, Part.TEST), 0),
-                forms[split.pk, source],
+                sizes[source, Part.TRAIN],
+                sizes[source, Part.VALIDATION],
+                sizes[source, Part.TEST],
+                forms[source],
             )
             for source in Source
-            if (split.pk, source) in forms
-        ]
-        for split in splits
-    }
+            if forms[source]
+        ),
+        tuple(
+            leak
+            for part, items in parts.items()
+            if part != Part.TRAIN
+            for leak in shared(part, items, train)
+        ),
+        _overlaps(train, parts[Part.VALIDATION]),
+    )
 
 
-def counts_of_planned(examples: Sequence[Example]) -> list[PartCounts]:
-    """Return the counts of examples that are not stored."""
-    sizes = Counter((example.source, example.part) for example in examples)
-    forms = Counter(source for source, _ in {(each.source, each.logical_form) for each in examples})
-    return [
-        PartCounts(
-            source,
-            sizes[source, Part.TRAIN],
-            sizes[source, Part.VALIDATION],
-            sizes[source, Part.TEST],
-            forms[source],
-        )
-        for source in Source
-        if forms[source]
-    ]
+def _overlaps(train: Sequence[SplitItem], validation: Sequence[SplitItem]) -> dict[str, Overlap]:
+    """Return by source what ``validation`` asks for, beside ``train``.
 
-
-def leakage_of(split: Split) -> Sequence[Leak]:
-    """Return what validation and test share with training, both sources together.
-
-    One query, and none for a split that was asked about lately: it never changes.
+    New commands are those that no training pair has or rewrites. A generated pair rewrites none, nor does a text of
+    which nobody knows a command.
     """
-    return _leakage_of(split.pk, split.content_hash)
-
-
-@lru_cache(maxsize=KEPT_SPLITS)
-def _leakage_of(key: int, content_hash: str) -> Sequence[Leak]:
-    parts = _items_by_part(Split(pk=key))
-    train = parts.pop(Part.TRAIN, [])
-    return tuple(leak for part, items in parts.items() for leak in shared(part, items, train))
+    taught = Counter(item.logical_form for item in train)
+    learned = {"", *(item.source_command for item in train)}
+    asked: dict[str, Counter[str]] = {}
+    new: Counter[str] = Counter()
+    for item in validation:
+        asked.setdefault(item.source, Counter())[item.logical_form] += 1
+        if item.source != Source.GENERATED and item.source_command not in learned:
+            new[item.source] += 1
+    return {source: overlap_of(forms, taught, new[source]) for source, forms in asked.items()}
 
 
 def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> list[NearDuplicates]:

@@ -96,7 +96,8 @@ class Split(models.Model):
     ``proportions`` are the shares of train, validation and test that were asked for, fractions of 1; empty
     where nobody asked for any. ``tests_on_models`` says that what language models wrote is in validation and test
     too. ``sample`` is a ``SampleNote`` as JSON where the commands were a sample then, else empty. ``follows`` is
-    the split that this one freezes anew.
+    the split that this one freezes anew. ``figures`` say as JSON what the parts hold and share
+    (``annotations.generation.split_statistics``).
     """
 
     world = models.ForeignKey(World, on_delete=models.CASCADE, related_name="splits")
@@ -110,6 +111,7 @@ class Split(models.Model):
         "self", null=True, blank=True, on_delete=models.SET_NULL, related_name="followed_by"
     )
     content_hash = models.CharField(max_length=64)
+    figures = models.JSONField(default=dict, blank=True, editable=False)
     created_by = models.ForeignKey(User, null=True, blank=True, on_delete=models.SET_NULL)
     created_at = models.DateTimeField(auto_now_add=True)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from annotations.generation.split_statistics import counts_of
+from annotations.generation.split_statistics import figures_of
 from annotations.models import Example
 from annotations.rows.synchronise import batches
 from annotations.showing.form_presentation import Pieces, difference, unmarked
@@ -99,7 +99,7 @@ class _ComparisonReport:
 
     def runs(self) -> dict[str, Any]:
         split = self.compared.base.split
-        return {"split": split, "counts": counts_of([split])[split.pk], "chosen": self.chosen}
+        return {"split": split, "counts": figures_of(split).counts, "chosen": self.chosen}
 
     def differences(self) -> dict[str, Any]:
         bars = [

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
-from annotations.generation.split_statistics import counts_of
+from annotations.generation.split_statistics import figures_of
 from annotations.language.corpus import KNOWN, Part
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import parsers, title_of
@@ -97,7 +97,7 @@ class _RunReport:
         return {
             "description": entry.description if entry else "",
             "changed": dict(self.run.changed_hyperparameters()),
-            "counts": counts_of([self.run.split])[self.run.split_id],
+            "counts": figures_of(self.run.split).counts,
             "checkpoints": self.run.checkpoints.all(),
         }
 

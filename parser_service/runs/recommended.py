@@ -6,11 +6,9 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from django.db.models import Case, Exists, OuterRef, Value, When
-
-from annotations.generation.overlaps import form_counts, overlaps_of
-from annotations.language.corpus import Criterion, Overlap, Part, together
-from annotations.models import Entity, Example, Split, World
+from annotations.generation.split_statistics import figures_of
+from annotations.language.corpus import Criterion, Overlap, together
+from annotations.models import Entity, Split, World
 from annotations.models.splits import Source
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES
 from parser_service.parsers.pretrained_files import Gap, find_gaps
@@ -27,16 +25,17 @@ def usual_split(world: World) -> Split | None:
     Splits with paraphrases to learn from come first, of these those by command, then by source command; of several
     the newest.
     """
-    learned = Example.objects.of(Part.TRAIN).exclude(source=Source.GENERATED)
-    places = [When(criterion=each, then=Value(place)) for place, each in enumerate(USUAL_ORDER)]
-    return (
-        world.splits.annotate(
-            has_paraphrases=Exists(learned.filter(split=OuterRef("pk"))),
-            place=Case(*places, default=Value(len(places))),
-        )
-        .order_by("-has_paraphrases", "place", "-created_at", "-pk")
-        .first()
-    )
+
+    def place(split: Split) -> tuple[bool, int]:
+        has_paraphrases = bool(train_sources(split) - {Source.GENERATED})
+        return not has_paraphrases, USUAL_ORDER.index(Criterion(split.criterion))
+
+    return min(world.splits.order_by("-created_at", "-pk"), key=place, default=None)
+
+
+def train_sources(split: Split) -> set[str]:
+    """Return the sources of the training pairs of a split."""
+    return {each.source for each in figures_of(split).counts if each.train}
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,17 +65,15 @@ class SplitContents:
 
 
 def contents_of(split: Split) -> SplitContents:
-    """Count the pairs of a split. Two queries."""
-    train: Counter[str] = Counter()
-    others: Counter[str] = Counter()
-    counts = form_counts(split)
-    for (part, source, _), count in counts.items():
-        if part == Part.TRAIN:
-            train[source] += count
-        else:
-            others[part] += count
-    overlaps = overlaps_of(split, counts)
-    return SplitContents(split, train, others[Part.VALIDATION], others[Part.TEST], overlaps)
+    """Return what the figures of a split say."""
+    figures = figures_of(split)
+    return SplitContents(
+        split,
+        Counter({each.source: each.train for each in figures.counts}),
+        sum(each.validation for each in figures.counts),
+        sum(each.test for each in figures.counts),
+        figures.overlaps,
+    )
 
 
 def material_of(world: World, contents: SplitContents | None) -> TrainingMaterial:
@@ -94,13 +91,21 @@ def material_of(world: World, contents: SplitContents | None) -> TrainingMateria
     )
 
 
-def gaps_of_parsers() -> dict[str, list[Gap]]:
-    """Return what each parser lacks before it can be trained with its defaults; empty where nothing."""
-    return {name: find_gaps(make_config(name), anywhere=False) for name in parsers()}
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """The parser to train next on a split, and what says so. ``contents`` is None without a split, and ``gaps`` what
+    each parser lacks before it can be trained with its defaults; empty where nothing."""
+
+    contents: SplitContents | None
+    material: TrainingMaterial
+    gaps: Mapping[str, list[Gap]]
+    recommendation: Recommendation
 
 
-def recommendation_for(world: World, split: Split | None = None) -> Recommendation:
-    """Return the parser to train next on ``split``, or on ``usual_split``."""
-    split = split or usual_split(world)
-    lacking = {name for name, gaps in gaps_of_parsers().items() if gaps}
-    return recommend(material_of(world, contents_of(split) if split else None), lacking)
+def advise(world: World, split: Split | None) -> Advice:
+    """Return the parser to train next on ``split``. Two queries."""
+    contents = contents_of(split) if split else None
+    material = material_of(world, contents)
+    gaps = {name: find_gaps(make_config(name), anywhere=False) for name in parsers()}
+    lacking = {name for name, of_parser in gaps.items() if of_parser}
+    return Advice(contents, material, gaps, recommend(material, lacking))

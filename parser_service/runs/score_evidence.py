@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from annotations.generation.overlaps import new_form_share
+from annotations.generation.split_statistics import figures_of
 from annotations.language.corpus import KNOWN
 from parser_service.models import TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
@@ -62,7 +62,7 @@ def why_not(run: TrainingRun) -> str:
         return "It learns nothing, so it needs no run."
     if run.train_share != 1:
         return "It learned from a share of the training pairs."
-    if not entry.writes_new_forms and new_form_share(run.split) >= MANY_NEW_FORMS:
+    if not entry.writes_new_forms and figures_of(run.split).new_form_share >= MANY_NEW_FORMS:
         return "A third or more of the validation part asks for forms that it cannot answer with."
     scores = shown_scores(run.evaluations.all(), run.split.criterion)
     asked = [

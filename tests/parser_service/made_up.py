@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 
+from annotations.generation.split_statistics import store_figures
 from annotations.language.corpus import by_length, write_pairs
 from annotations.models import Example, Split, World
 
@@ -55,6 +56,7 @@ def make_split(world: World, name: str = "home") -> Split:
         for position, (command, utterance, form) in enumerate(made_up_pairs())
         for source, text in (("generated", command), ("paraphrased", utterance))
     )
+    store_figures(split)
     return split
 
 

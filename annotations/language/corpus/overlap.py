@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, order=True)
 class FormOverlap:
     """A form that ``asked`` pairs of a part have, and ``taught`` pairs of the training part."""
 
@@ -52,9 +52,9 @@ class Overlap:
 def overlap_of(
     asked: Mapping[str, int], taught: Mapping[str, int], new_commands: int = 0
 ) -> Overlap:
-    """Return the overlap of forms that ``asked`` and ``taught`` count pairs of, in the order of the forms."""
-    forms = (FormOverlap(count, taught.get(form, 0)) for form, count in sorted(asked.items()))
-    return Overlap(tuple(forms), new_commands)
+    """Return the overlap of forms that ``asked`` and ``taught`` count pairs of, those of fewest pairs first."""
+    forms = (FormOverlap(count, taught.get(form, 0)) for form, count in asked.items())
+    return Overlap(tuple(sorted(forms)), new_commands)
 
 
 def together(overlaps: Iterable[Overlap]) -> Overlap:

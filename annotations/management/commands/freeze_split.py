@@ -10,7 +10,7 @@ from django.core.management.base import CommandError, CommandParser
 from django.db import transaction
 
 from annotations.generation.freezing import as_items, freeze_split, unresolved_prompts
-from annotations.generation.split_statistics import counts_of
+from annotations.generation.split_statistics import figures_of
 from annotations.language.corpus import Criterion
 from annotations.management.base import ReportingCommand, find_world
 from annotations.models import Split
@@ -77,7 +77,7 @@ class Command(ReportingCommand):
 
 
 def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
-    counts, described = counts_of(splits), []
+    described = []
     for split in splits:
         row: dict[str, Any] = {
             name: getattr(split, name) for name in ("name", "criterion", "seed", "content_hash")
@@ -88,7 +88,7 @@ def _describe(splits: Sequence[Split]) -> list[dict[str, Any]]:
             row["unresolved_prompts"] = sorted(unresolved_prompts(items).values())
         row["counts"] = {
             each.source: {key: value for key, value in asdict(each).items() if key != "source"}
-            for each in counts[split.pk]
+            for each in figures_of(split).counts
         }
         described.append(row)
     return described

@@ -8,7 +8,7 @@ from typing import Any
 
 from django.core.management.base import CommandParser
 
-from annotations.generation.split_statistics import leakage_of, near_duplicates_of
+from annotations.generation.split_statistics import figures_of, near_duplicates_of
 from annotations.management.base import ReportingCommand, find_split, find_world
 
 
@@ -33,7 +33,7 @@ class Command(ReportingCommand):
             "criterion": split.criterion,
             "shared": [
                 {**asdict(leak), "share": round(leak.share, 4)}
-                for leak in [*leakage_of(split), *(each.leak for each in near)]
+                for leak in [*figures_of(split).leaks, *(each.leak for each in near)]
             ],
             "near_duplicates": {
                 each.leak.part: [asdict(pair) for pair in each.duplicates[: max(examples, 0)]]

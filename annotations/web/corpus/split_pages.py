@@ -10,7 +10,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 
 from annotations.generation.freezing_job import start_freezing, start_preview, start_renewal
 from annotations.generation.renewing import changes_since, is_from_import, last_of
-from annotations.generation.split_statistics import counts_of, leakage_of, near_duplicates_of
+from annotations.generation.split_statistics import figures_of, near_duplicates_of
 from annotations.labelling.label_changes import examples_before
 from annotations.language.texts import LanguageError
 from annotations.models import Duty, Example, Job, Split, World
@@ -41,8 +41,8 @@ MOST_COMPARED = 500
 def splits(request: WorldRequest, world: World) -> HttpResponse:
     """List the splits with the number of their pairs by part and source."""
     listing = Listing(request, SplitFilters, world.splits.select_related("created_by"), SPLIT_SORTS)
-    counts = counts_of(listing.rows)
-    context = {"listing": listing, "rows": [(row, counts[row.pk]) for row in listing.rows]}
+    rows = [(row, figures_of(row).counts) for row in listing.rows]
+    context = {"listing": listing, "rows": rows}
     return render_list(request, "annotations/corpus/splits.html", context)
 
 
@@ -76,16 +76,16 @@ def split(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     row = get_object_or_404(
         Split.objects.select_related("created_by", "follows", "world"), world=world, pk=pk
     )
-    newest, counts = last_of(row), counts_of([row])[row.pk]
+    newest, figures = last_of(row), figures_of(row)
     context: dict[str, Any] = {
         "split": row,
         "newest": newest if newest != row else None,
-        "counts": counts,
-        "leakage": leakage_of(row),
+        "counts": figures.counts,
+        "leakage": figures.leaks,
         "wrong": examples_before(row).count(),
         "listing": Listing(request, ExampleFilters, row.examples.all(), SORTS),
     }
-    if newest == row and sum(each.total for each in counts) <= MOST_COMPARED:
+    if newest == row and sum(each.total for each in figures.counts) <= MOST_COMPARED:
         context |= {"is_compared": True, **_changes_of(row)}
     return render_list(request, "annotations/corpus/split.html", context)
 

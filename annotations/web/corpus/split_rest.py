@@ -16,7 +16,7 @@ from rest_framework.response import Response
 
 from annotations.generation.freezing_job import start_freezing, start_renewal
 from annotations.generation.renewing import changes_since
-from annotations.generation.split_statistics import counts_of, near_duplicates_of
+from annotations.generation.split_statistics import figures_of, near_duplicates_of
 from annotations.language.corpus import DEFAULT_PROPORTIONS, Criterion
 from annotations.models import Duty, Example, Job, Split
 from annotations.models.splits import criterion_choices
@@ -69,8 +69,7 @@ class SplitSerializer(serializers.ModelSerializer[Split]):
 
     @extend_schema_field(PartCountSerializer(many=True))
     def get_counts(self, row: Split) -> Any:
-        counts = self.context["counts"][row.pk]
-        return PartCountSerializer(counts, many=True).data
+        return PartCountSerializer(figures_of(row).counts, many=True).data
 
 
 class NewSplit(FormFields):
@@ -102,13 +101,6 @@ class SplitViewSet(RowsViewSet):
 
     def rows(self) -> QuerySet[Split]:
         return self.world.splits.select_related("created_by", "world")
-
-    def get_serializer(self, rows: Any = None, **options: Any) -> serializers.BaseSerializer[Any]:
-        serializer = super().get_serializer(rows, **options)
-        if rows is not None:
-            context: Any = serializer.context
-            context["counts"] = counts_of(rows if options.get("many") else [rows])
-        return serializer
 
     @extend_schema(request=NewSplit, responses={201: SplitSerializer, 202: JobSerializer})
     @may_take_long

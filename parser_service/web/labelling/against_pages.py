@@ -22,7 +22,7 @@ from parser_service.labelling.people_against_models import (
 from parser_service.parsers.conditions import Protocol
 from parser_service.parsers.pretrained_files import find_gaps
 from parser_service.parsers.registry import make_config, parsers, title_of
-from parser_service.runs.recommended import recommendation_for
+from parser_service.runs.recommended import advise, usual_split
 
 
 @never_cache
@@ -31,7 +31,7 @@ def paraphrase_runs(request: WorldRequest, world: World) -> HttpResponse:
     """Show the runs on each, and the button that starts them."""
     pairs = run_pairs(world)
     trainable = trainable_parsers()
-    recommended = recommendation_for(world).parser
+    recommended = advise(world, usual_split(world)).recommendation.parser
     context = {
         "pairs": pairs,
         "first_runs": [pair.people for pair in pairs],

@@ -14,7 +14,7 @@ from django.shortcuts import get_object_or_404, redirect, render
 from django.utils.http import urlencode
 from django.views.decorators.cache import never_cache
 
-from annotations.language.corpus import KNOWN, Part
+from annotations.language.corpus import KNOWN
 from annotations.language.texts import Refusal
 from annotations.models import Duty, Split, World
 from annotations.models.background import Status
@@ -25,15 +25,14 @@ from parser_service.models import Evaluation, TrainingRun
 from parser_service.models.evaluations import ShownScore, shown_scores
 from parser_service.parsers.conditions import SOURCE_WORDS, SOURCES, written_sources
 from parser_service.parsers.pretrained_files import Gap
-from parser_service.parsers.recommendation import Expectation, expectation_of, recommend
+from parser_service.parsers.recommendation import Expectation, expectation_of
 from parser_service.parsers.registry import RegistryEntry, config_fields, parsers
 from parser_service.results.accuracy_tables import seeds_url
 from parser_service.runs.recommended import (
+    Advice,
     SplitContents,
-    contents_of,
-    gaps_of_parsers,
-    material_of,
-    recommendation_for,
+    advise,
+    train_sources,
     usual_split,
 )
 from parser_service.runs.retraining import retrainable
@@ -63,16 +62,17 @@ def run_new(request: WorldRequest, world: World) -> HttpResponse:
 
 def context_of(world: World, form: RunForm, choices: RunChoices) -> dict[str, object]:
     """Return what the page shows besides the form."""
-    splits = world.splits.all()
     key = number_in(str(form["split"].value() or ""))
-    chosen = splits.filter(pk=key).first() if key else None
+    is_other = key and (choices.split is None or key != choices.split.pk)
+    chosen = (world.splits.filter(pk=key).first() if is_other else None) or choices.split
+    advice = choices.advice if chosen == choices.split else advise(world, chosen)
     return {
         "form": form,
         "chosen": choices.parser,
         "entry": parsers()[choices.parser],
         "note": choices.note,
-        "picker": picker_of(world, chosen or usual_split(world), choices.parser),
-        "has_splits": splits.exists(),
+        "picker": picker_of(world, chosen, advice, choices.parser),
+        "has_splits": choices.split is not None,
     }
 
 
@@ -130,10 +130,12 @@ def run_retrain(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 
 @dataclass(frozen=True, slots=True)
 class RunChoices:
-    """The parser and the initial values of its form; ``note`` is a sentence about what
-    could not be kept, or empty."""
+    """The parser, the split and the initial values of the form, with the advice on that split; ``note`` is a
+    sentence about what could not be kept, or empty. ``split`` is None in a world without any."""
 
     parser: str
+    split: Split | None
+    advice: Advice
     initial: dict[str, Any] = field(default_factory=dict)
     note: str = ""
 
@@ -141,25 +143,28 @@ class RunChoices:
 def choices_in(query: QueryDict, world: World) -> RunChoices:
     """Read the choices from an address: ``like`` names a run to repeat. The other parameters have the names
     of the fields; unknown ones are ignored."""
+    initial: dict[str, Any]
     like = number_in(query.get("like", ""))
     run = world.runs.filter(pk=like).first() if like else None
     split = split_in(query, world)
-    advice = recommendation_for(world, split)
-    parser = query.get("parser", run.parser if run else advice.parser)
+    advice = advise(world, split)
+    recommended = advice.recommendation
+    parser = query.get("parser", run.parser if run else recommended.parser)
     if parser not in parsers():
         note = f"There is no parser called {parser!r} any more."
-        return RunChoices(advice.parser, {"protocol": advice.protocol}, note)
-    initial: dict[str, Any] = values_of(run, parser) if run else {}
+        initial = {"protocol": recommended.protocol}
+        return RunChoices(recommended.parser, split, advice, initial, note)
+    initial = values_of(run, parser) if run else {}
     if run is None:
         initial = {"split": split and split.pk, "train_sources": all_sources(split)}
-        if parser == advice.parser:
-            initial["protocol"] = advice.protocol
+        if parser == recommended.parser:
+            initial["protocol"] = recommended.protocol
     names = [*GENERAL, *(PREFIX + each.name for each in config_fields(parser))]
     initial.update({name: query[name] for name in names if name in query})
     protocol, entry, note = initial.get("protocol"), parsers()[parser], ""
     if protocol not in (None, "", *entry.protocols):
         note = f"{entry.title} has no {protocol} protocol; {entry.protocols[0]} is chosen instead."
-    return RunChoices(parser, initial, note)
+    return RunChoices(parser, split, advice, initial, note)
 
 
 def split_in(query: QueryDict, world: World) -> Split | None:
@@ -170,10 +175,7 @@ def split_in(query: QueryDict, world: World) -> Split | None:
 
 def all_sources(split: Split | None) -> str:
     """Return all that a split can be trained on."""
-    if split is None:
-        return "gen"
-    sources = split.examples.of(Part.TRAIN).order_by().values_list("source", flat=True)
-    return written_sources(sources.distinct()) or "gen"
+    return (written_sources(train_sources(split)) if split else "") or "gen"
 
 
 def values_of(run: TrainingRun, parser: str) -> dict[str, Any]:
@@ -238,17 +240,15 @@ class ParserPicker:
         return (self.recommended, *self.able, *self.lacking)
 
 
-def picker_of(world: World, split: Split | None, chosen: str = "") -> ParserPicker:
-    """Return the parsers to choose from for ``split``, on which accuracies are. Six queries."""
+def picker_of(world: World, split: Split | None, advice: Advice, chosen: str = "") -> ParserPicker:
+    """Return the parsers to choose from for ``split``, on which accuracies are. Two queries."""
     seconds, scores = _seconds(world), _scores(world, split)
-    contents = contents_of(split) if split else None
-    material, gaps = material_of(world, contents), gaps_of_parsers()
-    advice = recommend(material, {name for name, of_parser in gaps.items() if of_parser})
+    gaps, recommended = advice.gaps, advice.recommendation
     options = [
         ParserOption(
             name,
             entry,
-            expectation_of(name, material),
+            expectation_of(name, advice.material),
             tuple(gaps[name]),
             seconds.get(name),
             tuple(
@@ -259,14 +259,14 @@ def picker_of(world: World, split: Split | None, chosen: str = "") -> ParserPick
         )
         for name, entry in parsers().items()
     ]
-    others = [each for each in options if each.name != advice.parser]
+    others = [each for each in options if each.name != recommended.parser]
     return ParserPicker(
-        recommended=next(each for each in options if each.name == advice.parser),
-        reason=advice.reason,
+        recommended=next(each for each in options if each.name == recommended.parser),
+        reason=recommended.reason,
         able=tuple(each for each in others if not each.gaps),
         lacking=tuple(each for each in others if each.gaps),
-        contents=contents,
-        is_lacking_chosen=bool(gaps.get(chosen)) and chosen != advice.parser,
+        contents=advice.contents,
+        is_lacking_chosen=bool(gaps.get(chosen)) and chosen != recommended.parser,
     )
 
 

@@ -6,13 +6,11 @@ from typing import Any
 
 from django import forms
 
-from annotations.language.corpus import Part
 from annotations.language.texts import Refusal
-from annotations.models import Example, Split, World
+from annotations.models import Split, World
 from annotations.web.forms import choice_field, row_field
 from parser_service.parsers.conditions import (
     PAPERS_SOURCES,
-    SOURCES,
     TRAIN_SOURCES,
     Protocol,
     sources_of,
@@ -20,6 +18,7 @@ from parser_service.parsers.conditions import (
 from parser_service.parsers.hyperparameters.fields import ConfigField
 from parser_service.parsers.pretrained_files import missing_weights
 from parser_service.parsers.registry import config_fields, entry, make_config
+from parser_service.runs.recommended import train_sources
 from parser_service.runs.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS, seeds_from
 
 PROTOCOL_LABELS = {
@@ -153,10 +152,7 @@ class RunForm(forms.Form):
 
 def offered_sources(world: World) -> list[str]:
     """Return what runs of ``world`` can be trained on: what the paper has, and whatever its splits can give."""
-    examples = Example.objects.filter(
-        split__world=world, part=Part.TRAIN, source__in=SOURCES.values()
-    )
-    there = set(examples.order_by().values_list("source", flat=True).distinct())
+    there = set[str]().union(*map(train_sources, world.splits.all()))
     return [
         each
         for each in TRAIN_SOURCES

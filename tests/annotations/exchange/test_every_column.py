@@ -18,6 +18,7 @@ from annotations.exchange.archive_tables import WORLD_FIELDS, ArchiveTable, tabl
 from annotations.exchange.row_checks import FORMS
 from annotations.exchange.world_import import import_world
 from annotations.generation.freezing import content_hash_of
+from annotations.generation.split_statistics import figures_of
 from annotations.models import Comment, Grammar, Ontology, Primitive, Recipe, Split, World
 from annotations.rows.history import DELETED, history_of
 from annotations.rows.row_kinds import KINDS
@@ -37,6 +38,7 @@ LEFT_OUT = {
     "annotations.Campaign.screened_out_code": "a secret",
     "annotations.Contributor.saves": "a limit of the last minute",
     "annotations.Contributor.saves_since": "a limit of the last minute",
+    "annotations.Split.figures": "counted again from the examples",
     "annotations.Submission.browser": "the copy has no page that asks for it",
     "annotations.Submission.read_by_run": RUNS,
     "annotations.Utterance.upload": "an upload can be undone only where it was made",
@@ -195,6 +197,9 @@ def test_every_column_arrives(full):
                 for each in (full, again)
             ]
             assert kept[0] == kept[1], f"{table.name}.{name}"
+    assert [each.figures for each in again.splits.all()] == [
+        figures_of(each).as_json() for each in full.splits.all()
+    ]
     assert (
         again.comments.get(pk=again.comments.first().pk).subject
         == again.grammar.templates.order_by("pk").first().pk

@@ -9,7 +9,7 @@ from annotations.exchange.split_export import export_split
 from annotations.generation.freezing import as_items, freeze_split, unresolved_prompts
 from annotations.generation.generating import generate_pairs
 from annotations.generation.renewing import changes_since, freeze_anew
-from annotations.generation.split_statistics import counts_of
+from annotations.generation.split_statistics import figures_of
 from annotations.language.texts.errors import LanguageError
 from annotations.models import Command, Example, Paraphrase
 from annotations.models.campaigns import ContributorKind
@@ -184,7 +184,7 @@ def test_what_a_language_model_wrote_is_trained_on_and_never_tested_on(by_model)
     assert parts_of(split, "paraphrased") == {"train", "validation", "test"}
     people = split.examples.filter(source="paraphrased")
     assert people.count() == Paraphrase.objects.filter(contributor__kind="person").count()
-    counts = {each.source: each for each in counts_of([split])[split.pk]}
+    counts = {each.source: each for each in figures_of(split).counts}
     assert counts["model"].total == split.examples.filter(source="model").count() > 0
     positions = people.filter(part="test").values_list("position", flat=True)
     assert sorted(positions) == list(range(people.filter(part="test").count()))

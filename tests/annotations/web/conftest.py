@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.generation.split_statistics import store_figures
 from annotations.models import ApiToken, Example, Split
 
 
@@ -36,6 +37,7 @@ def make_split(world, name="walker-command"):
         )
         for part, position, utterance, form in rows
     )
+    store_figures(split)
     return split
 
 

@@ -8,7 +8,7 @@ import pytest
 from django.db import connection
 from django.test.utils import CaptureQueriesContext
 
-from annotations.generation.split_statistics import counts_of, leakage_of
+from annotations.generation.split_statistics import figures_of, store_figures
 from annotations.models import Split
 from tests.parser_service.made_up import make_split
 
@@ -40,7 +40,7 @@ def test_what_was_counted_is_what_is_frozen(sample, anna):
     counted = anna.post("/w/home/splits/new/", {**GOOD, "preview": "1"}).context["counts"]
     anna.post("/w/home/splits/new/", {**GOOD, "freeze": "1"})
     made = Split.objects.get(name="mine")
-    frozen = counts_of([made])[made.pk]
+    frozen = figures_of(made).counts
     assert [{**asdict(each), "total": each.total} for each in frozen] == counted
 
 
@@ -94,7 +94,10 @@ def test_what_parts_share_is_shown_as_it_is(sample):
             logical_form="( go )",
             position=100,
         )
-    leaks = {(leak.part, leak.what): (leak.shared, leak.pairs) for leak in leakage_of(sample.split)}
+    store_figures(sample.split)
+    leaks = {
+        (leak.part, leak.what): (leak.shared, leak.pairs) for leak in figures_of(sample.split).leaks
+    }
     assert leaks["test", "source commands"] == (1, 1)
     assert leaks["test", "utterances"][0] >= 1
     assert leaks["validation", "utterances"] == (0, 12)

@@ -7,11 +7,14 @@ from html import unescape
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
+from django.db import connection
+from django.test.utils import CaptureQueriesContext
 
 from parser_service.models import Evaluation, TrainingRun
 from parser_service.parsers import pretrained_files
 from parser_service.parsers.registry import parsers
 from parser_service.runs import run_requests
+from parser_service.runs.recommended import advise
 from parser_service.web.runs.new_run_pages import picker_of
 from tests.parser_service.made_up import make_split
 from tests.parser_service.web.runs.forms_of_pages import PageForm
@@ -30,11 +33,11 @@ def second_split(sample):
 
 
 def options_of(world, split=None):
-    return {each.name: each for each in picker_of(world, split).options}
+    return {each.name: each for each in picker_of(world, split, advise(world, split)).options}
 
 
 def test_every_parser_is_offered_once_with_a_sentence(sample):
-    picker = picker_of(sample.world, sample.split)
+    picker = picker_of(sample.world, sample.split, advise(sample.world, sample.split))
     assert sorted(each.name for each in picker.options) == sorted(parsers())
     assert not picker.recommended.gaps and not any(each.gaps for each in picker.able)
     assert all(each.gaps for each in picker.lacking)
@@ -77,9 +80,22 @@ def test_a_parser_says_how_long_it_took_and_how_well_it_did_here(sample, other_s
     assert options_of(sample.world, sample.split)["seq2seq"].seconds is None
 
 
-def test_the_picker_costs_six_queries(sample, django_assert_num_queries):
-    with django_assert_num_queries(6):
-        picker_of(sample.world, sample.split)
+def test_a_split_is_looked_at_once_for_the_whole_form(sample, django_assert_num_queries):
+    """Two queries for what has been trained, two for times and accuracies, none for the examples of the split."""
+    with django_assert_num_queries(2):
+        advice = advise(sample.world, sample.split)
+    with django_assert_num_queries(2):
+        picker_of(sample.world, sample.split, advice)
+
+
+def test_the_form_asks_nothing_twice(sample, adam):
+    adam.get(NEW)
+    with CaptureQueriesContext(connection) as queries:
+        adam.get(NEW)
+    asked = [each["sql"] for each in queries]
+    assert not [sql for sql in asked if "annotations_example" in sql]
+    twice = {sql for sql in asked if asked.count(sql) > 1}
+    assert all('FROM "annotations_split"' in sql for sql in twice)  # the list of the field is one
 
 
 def test_figures_of_here_stand_instead_of_what_to_expect(sample, second_split, adam):

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from json import dumps, loads
+
 import pytest
+from django.apps import apps
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.generation.overlaps import new_form_share, overlaps_of
+from annotations.generation.split_statistics import SplitFigures, figures_of, store_figures
 from annotations.language.corpus import FormOverlap, Overlap, overlap_of, together
 from annotations.models import Example, Split, World
 
@@ -60,10 +64,8 @@ def split(world: World) -> Split:
     return made
 
 
-def test_forms_and_commands_are_counted_by_source(split, django_assert_num_queries):
-    with django_assert_num_queries(2):
-        overlaps = overlaps_of(split)
-    assert overlaps == {
+def test_forms_and_commands_are_counted_by_source(split):
+    assert figures_of(split).overlaps == {
         "generated": Overlap((FormOverlap(1, 0), FormOverlap(1, 2))),
         "paraphrased": Overlap((FormOverlap(2, 1),), new_commands=1),
         "said": Overlap((FormOverlap(1, 1),)),
@@ -71,6 +73,28 @@ def test_forms_and_commands_are_counted_by_source(split, django_assert_num_queri
 
 
 def test_the_share_is_that_of_all_sources_together(split):
-    assert new_form_share(split) == 0.25  # one of four forms, one of five pairs
+    assert figures_of(split).new_form_share == 0.25  # one of four forms, one of five pairs
     split.examples.filter(part="train").delete()
-    assert new_form_share(split) == 1
+    assert figures_of(split).new_form_share == 1
+
+
+def test_stored_figures_are_those_that_were_counted(split, django_assert_num_queries):
+    counted = figures_of(split)
+    store_figures(split)
+    stored = Split.objects.get(pk=split.pk)
+    with django_assert_num_queries(0):
+        assert figures_of(stored) == counted
+    assert (counted.counts[0].train, counted.counts[0].forms) == (2, 3)
+    assert {leak.part for leak in counted.leaks} == {"validation", "test"}
+
+
+@given(COUNTS, COUNTS)
+def test_figures_come_back_from_json_as_they_were(asked, taught):
+    figures = SplitFigures((), (), {"said": overlap_of(asked, taught, 3)})
+    assert SplitFigures.from_json(loads(dumps(figures.as_json()))) == figures
+
+
+def test_an_upgrade_stores_the_figures_of_every_split(split):
+    import_module("annotations.migrations.0046_figures_of_splits").store(apps, None)
+    stored = Split.objects.get(pk=split.pk)
+    assert stored.figures == figures_of(split).as_json() != {}
