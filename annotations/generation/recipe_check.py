@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from typing import TypeAlias
+
+from django.db.models import Exists, OuterRef, Q, Subquery
 
 from annotations.language.forms import CLASS_TOKEN, read_form, to_corpus
 from annotations.language.grounding import Anonymizer, deanonymize
@@ -24,7 +28,7 @@ from annotations.language.plans import (
 )
 from annotations.language.texts import LanguageError, Position, Problem, error_at, say_count
 from annotations.language.world import Ontology, gloss
-from annotations.models import Primitive, Recipe, World
+from annotations.models import Command, Primitive, Recipe, World
 from annotations.rows.from_rows import classes_of, ontology_of, predicates_of
 
 FIELD = "text"  # what positions in the row call it
@@ -222,16 +226,15 @@ class _Examples:
 
     def _commands(self, actions: set[str]) -> Iterator[tuple[str, str]]:
         """Yield commands, each of another form, whose forms have one of the actions; short ones first."""
-        rows = self._world.commands.order_by("length", "position")
-        seen: set[str] = set()
-        for action in sorted(actions):
-            of_action = rows.filter(logical_form__text__contains=f"( {action} ")
-            for command, form in of_action.values_list("anonymized_text", "logical_form__text"):
-                if form not in seen:
-                    seen.add(form)
-                    yield command, form
-                if len(seen) >= MOST_TRIED:
-                    return
+        if not actions:
+            return
+        has_one = reduce(or_, (Q(text__contains=f"( {action} ") for action in sorted(actions)))
+        of_form = Command.objects.filter(logical_form=OuterRef("pk")).order_by("length", "position")
+        forms = self._world.logical_forms.filter(has_one).order_by("length", "pk")
+        said = forms.filter(Exists(of_form)).annotate(
+            command=Subquery(of_form.values("anonymized_text")[:1])
+        )
+        yield from said.values_list("command", "text")[:MOST_TRIED]
 
     def _grounded(self, command: str, form: str) -> tuple[str, Plan, str]:
         """Return a command with entities of the ontology in it, its plan, and its form with them."""

@@ -9,5 +9,4 @@ from parser_service.labelling import known_forms
 def forget_indices():
     """Worlds of two tests can have one key, which those of an installation never have."""
     known_forms._oracle.cache_clear()
-    known_forms._index_commands.cache_clear()
-    known_forms._index_labelled.cache_clear()
+    known_forms._kept.clear()
