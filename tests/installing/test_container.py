@@ -1,18 +1,24 @@
-"""The Containerfile names what is there: files, commands and variables."""
+"""Containerfile and compose.yaml name what is there: files, commands, variables and one another."""
 
 from __future__ import annotations
 
 import json
 import re
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
-from django.core.management import get_commands
+import yaml
+from django.core.management import get_commands, load_command_class
+
+from annotations.models.background import Queue
 
 ROOT = Path(__file__).resolve().parents[2]
 LINES = (ROOT / "Containerfile").read_text(encoding="utf-8").splitlines()
 STEPS = [line.split(maxsplit=1) for line in LINES if line and not line.startswith("#")]
 KNOWN = {"FROM", "WORKDIR", "COPY", "RUN", "ENV", "USER", "VOLUME", "EXPOSE", "ENTRYPOINT", "CMD"}
+DOCUMENTED = (ROOT / "docs" / "reference" / "variables.md").read_text(encoding="utf-8")
+VARIABLES = set(re.findall(r"^\| `([A-Z_]+)` \|", DOCUMENTED, re.MULTILINE))
 OF_OTHERS = {"PYTHONUNBUFFERED", "PIP_NO_CACHE_DIR"}
 
 
@@ -40,10 +46,52 @@ def test_it_calls_a_command_as_somebody_who_is_not_root():
 
 def test_its_variables_are_documented():
     names = {name for each in arguments("ENV") for name in re.findall(r"([A-Z_]+)=", each)}
-    documented = (ROOT / "docs" / "reference" / "variables.md").read_text(encoding="utf-8")
-    assert all(f"| `{name}` |" in documented for name in names - OF_OTHERS)
+    assert names - OF_OTHERS <= VARIABLES
 
 
 def test_packages_of_python_are_all_copied():
     packages = {path.parent.name for path in ROOT.glob("*/apps.py")}
     assert {f"{name} ./{name}" for name in packages} <= set(arguments("COPY"))
+
+
+COMPOSE = yaml.safe_load((ROOT / "compose.yaml").read_text(encoding="utf-8"))
+SERVICES = COMPOSE["services"]
+OURS = {name: each for name, each in SERVICES.items() if each["image"] == "gpsr-workbench"}
+
+
+def test_the_services_are_commands_of_this_project():
+    assert {each["command"][0] for each in OURS.values()} == {
+        *("migrate", "collectstatic", "serve", "parse_server", "work"),
+    }
+    for each in OURS.values():
+        name, *options = each["command"]
+        load_command_class(get_commands()[name], name).create_parser("manage.py", name).parse_args(
+            options
+        )
+
+
+def test_the_services_know_one_another():
+    for each in OURS.values():
+        variables = each["environment"]
+        assert set(variables) <= VARIABLES
+        for name in ("DATABASE_URL", "CELERY_BROKER_URL", "PARSER_URL"):
+            host = urlsplit(variables[name]).hostname
+            assert host in SERVICES, name
+        assert urlsplit(variables["PARSER_URL"]).port == int(variables["PARSER_PORT"])
+        assert set(each.get("depends_on", ())) <= set(SERVICES)
+    volumes = (
+        volume.split(":")[0] for each in SERVICES.values() for volume in each.get("volumes", ())
+    )
+    assert set(volumes) == set(COMPOSE["volumes"])
+
+
+def test_two_queues_have_workers_and_everything_waits_for_the_tables():
+    queues = {
+        queue
+        for each in OURS.values()
+        if each["command"][0] == "work"
+        for queue in each["command"][2:]
+    }
+    assert queues == set(Queue.values)
+    for name in OURS.keys() - {"migrate", "web"}:
+        assert OURS[name]["depends_on"]["migrate"]["condition"] == "service_completed_successfully"
