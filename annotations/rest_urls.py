@@ -86,6 +86,7 @@ description = [
     path("check/primitive/", recipe_rest.CheckPrimitive.as_view(), name="check-primitive"),
     path("recipe-book/", recipe_rest.OneRecipeBook.as_view(), name="recipe-book"),
     path("recipe-book/shipped/", recipe_rest.ShippedBooks.as_view(), name="shipped-books"),
+    path("recipe-book/proposed/", recipe_rest.ProposedRecipes.as_view(), name="proposed-recipes"),
     path("check/form/", check_rest.CheckForm.as_view(), name="check-form"),
     path("vocabulary/", vocabulary_rest.Vocabulary.as_view(), name="vocabulary"),
     path("guidelines/", guidelines_rest.OneGuidelines.as_view(), name="guidelines"),

@@ -77,6 +77,7 @@ urlpatterns = [
     path("ontology/classes.css", class_pages.class_colours, name="class_colours"),
     path("recipes/", recipe_pages.recipes, name="recipes"),
     path("recipes/book/", recipe_pages.recipe_book, name="recipe_book"),
+    path("recipes/proposed/", recipe_pages.recipes_proposed, name="recipes_proposed"),
     path("grammar/check/", production_pages.production_check, name="production_check"),
     path("grammar/coverage/", coverage_pages.coverage, name="coverage"),
     path("coverage/", coverage_pages.uncovered, name="uncovered"),

@@ -1,8 +1,8 @@
-"""Verb: give a world another recipe book as a whole, such as one that ships."""
+"""Verbs: give a world another recipe book as a whole, such as one that ships, or the recipes that are proposed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from hashlib import sha256
 from http import HTTPStatus
 from typing import Any
@@ -11,9 +11,16 @@ from django.db import transaction
 from django.db.models import QuerySet
 
 from annotations.generation.recipe_check import RowModel
-from annotations.language.plans import DEFAULT_BOOK, RecipeBook, ShippedBook, shipped_books
+from annotations.language.plans import (
+    DEFAULT_BOOK,
+    RecipeBook,
+    ShippedBook,
+    propose,
+    shipped_books,
+)
 from annotations.language.texts import Refusal
 from annotations.models import Primitive, Recipe, User, World
+from annotations.rows.from_rows import predicates_of, recipe_book_of
 from annotations.rows.history import ADDED, CHANGED, DELETED, keep, keep_first
 
 
@@ -71,6 +78,31 @@ def replace_book(world: World, book: RecipeBook, by: User, version: str = "") ->
             )
         _replace(world, Primitive, "name", primitives, by)
         _replace(world, Recipe, "left", recipes, by)
+
+
+def proposals_for(world: World) -> RecipeBook:
+    """Return what is proposed for the actions of ``world`` that no recipe covers."""
+    return propose(recipe_book_of(world), predicates_of(world))
+
+
+def take_proposals(world: World, by: User, actions: Collection[str] | None = None) -> RecipeBook:
+    """Add the recipes that are proposed to those of ``world``, with their primitives; return what was added.
+
+    ``actions`` limits them to those of some actions. A world without rows of its own gets those of the book that it
+    uses first.
+    """
+    with transaction.atomic():
+        world = World.objects.hold().get(pk=world.pk)
+        book, proposed = recipe_book_of(world), proposals_for(world)
+        recipes = tuple(
+            each for each in proposed.recipes if actions is None or each.pattern.action in actions
+        )
+        called = {call.primitive for each in recipes for call in each.calls}
+        primitives = tuple(each for each in proposed.primitives if each.name in called)
+        if recipes:
+            whole = RecipeBook((*book.primitives, *primitives), (*book.recipes, *recipes))
+            replace_book(world, whole, by)
+    return RecipeBook(primitives, recipes)
 
 
 def _replace(

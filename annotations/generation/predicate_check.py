@@ -38,7 +38,7 @@ def check_predicate(world: World, predicate: Predicate) -> CheckedPredicate:
     after = {**before, predicate.name: predicate}
     samples = (
         PredicateSample(to_reading(form), gloss(form, after, classes))
-        for form in sample_forms(predicate)
+        for form in sample_forms(predicate, after, classes)
     )
     return CheckedPredicate(tuple(samples), _broken(world, predicate.name, before, after))
 

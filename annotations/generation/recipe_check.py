@@ -19,6 +19,7 @@ from annotations.language.plans import (
     RecipeBook,
     TaskPlan,
     apply_recipes,
+    arguments_by_action,
     make_plan,
     plan_key,
     read_primitive,
@@ -77,7 +78,8 @@ def check_row(
     except LanguageError as error:
         return CheckedRow((error.problem,))
     actions = {*world.predicates.filter(kind="action").values_list("name", flat=True)}
-    found = book.problems(actions or None, classes_of(world).tokens)
+    arguments = arguments_by_action(predicates_of(world))
+    found = book.problems(actions or None, classes_of(world).tokens, arguments)
     problems = [each for each in found if each.position.source == FIELD]
     if replaced is not None:
         known = set(_book_with(world, model, replaced.text, replaced).problems())
@@ -127,7 +129,8 @@ def problems_by_row(world: World) -> Mapping[tuple[str, int], list[Problem]]:
             except LanguageError as error:
                 problems[kind, row.pk].append(error.problem)
     book = RecipeBook(tuple(readable["primitive"]), tuple(readable["recipe"]))  # type: ignore[arg-type]  # by kind
-    for problem in book.problems(classes=classes_of(world).tokens):
+    arguments = arguments_by_action(predicates_of(world))
+    for problem in book.problems(classes=classes_of(world).tokens, arguments=arguments):
         kind, key = problem.position.source.split()
         problems[kind, int(key)].append(problem)
     return problems

@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from annotations.language.forms import Form
-from annotations.language.plans import Lookup, RecipeBook, TaskPlan, apply_recipes, make_plan
+from annotations.language.plans import (
+    Lookup,
+    RecipeBook,
+    TaskPlan,
+    apply_recipes,
+    make_plan,
+    with_proposals,
+)
 from annotations.language.world import Ontology, Predicate
 from annotations.models import World
 from annotations.rows.from_rows import ontology_of, predicates_of, recipe_book_of
@@ -24,7 +31,9 @@ class TaskPlanner:
     @classmethod
     def of(cls, world: World) -> TaskPlanner:
         """Read what planning needs. Raises LanguageError for a stored text that cannot be read."""
-        return cls(ontology_of(world), predicates_of(world), recipe_book_of(world))
+        predicates = predicates_of(world)
+        book = with_proposals(recipe_book_of(world), predicates)
+        return cls(ontology_of(world), predicates, book)
 
     @cached_property
     def lookup(self) -> Lookup:

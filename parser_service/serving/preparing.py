@@ -22,6 +22,7 @@ from annotations.language.plans import (
     WordUse,
     default_book,
     usual_places,
+    with_proposals,
 )
 from annotations.language.templates import spread_derivations
 from annotations.language.texts import LanguageError, Refusal, has_half_character, normalise
@@ -108,7 +109,7 @@ class WorldLanguage:
             Anonymizer(ontology),
             lookup,
             names_of(world),
-            recipe_book_of(world),
+            with_proposals(recipe_book_of(world), predicates),
             usual_places(ontology, lookup),
             learned_use(world),
         )

@@ -33,19 +33,21 @@ from annotations.language.forms.logic import (
     read_spans,
     read_template_form,
 )
+from annotations.language.forms.meanings import (
+    NAMING,
+    NOUN,
+    PERSON,
+    PERSON_PREDICATES,
+    PLACE_CLASSES,
+    PLACING,
+    THING,
+    THINGS,
+    kind_of_class,
+)
 from annotations.language.forms.notations import to_corpus, to_reading, to_template
 from annotations.language.forms.printing import print_sequence, print_symbol, print_wildcard
 from annotations.language.forms.reader import SymbolReader, read_wildcard
-from annotations.language.forms.references import (
-    ANTECEDENTS,
-    PERSON,
-    PERSON_PREDICATES,
-    THING,
-    THINGS,
-    described_kind,
-    kind_of_class,
-    loose_references,
-)
+from annotations.language.forms.references import ANTECEDENTS, described_kind, loose_references
 from annotations.language.forms.slot_places import (
     SlotPlace,
     places_in_form,

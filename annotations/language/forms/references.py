@@ -4,6 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from annotations.language.forms.meanings import (
+    NOUN,
+    PERSON,
+    PERSON_PREDICATES,
+    PLACE_CLASSES,
+    THING,
+    THINGS,
+    kind_of_class,
+)
 from annotations.language.forms.symbols import Wildcard
 from annotations.language.forms.terms import (
     CONJUNCTION,
@@ -17,17 +26,8 @@ from annotations.language.forms.terms import (
     children,
 )
 
-# A λ of which one of these is said describes a person.
-PERSON_PREDICATES = frozenset(("person", "name", "male", "female", "gesture", "pose", "gender"))
-PERSON, THING, THINGS = "person", "thing", "things"
 # What a word can stand for, the likeliest first.
 ANTECEDENTS = {"it": (THING, THINGS), "them": (PERSON, THINGS)}
-_OF_CLASS = {"name": PERSON, "object": THING, "category": THINGS}
-
-
-def kind_of_class(entity_class: str) -> str:
-    """Return what an entity of a class is, for a reference; empty for one that no reference stands for."""
-    return _OF_CLASS.get(entity_class, "")
 
 
 def described_kind(form: Form) -> str:
@@ -47,9 +47,9 @@ def described_kind(form: Form) -> str:
     kinds = [described_kind(each.arguments[1]) for each in said if len(each.arguments) > 1]
     tokens = (each for each in kinds if each)
     is_place = any(
-        isinstance(argument, Constant) and argument.token_class in ("location", "room")
+        isinstance(argument, Constant) and argument.token_class in PLACE_CLASSES
         for each in said
-        if each.predicate == "is_a"
+        if each.predicate == NOUN
         for argument in each.arguments
     )
     return "" if is_place else (THINGS if next(tokens, "") == THINGS else THING)

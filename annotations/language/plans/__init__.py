@@ -61,6 +61,7 @@ from annotations.language.plans.plan import (
     plan_schema_text,
 )
 from annotations.language.plans.planning import make_plan
+from annotations.language.plans.proposing import arguments_by_action, propose, with_proposals
 from annotations.language.plans.qualifying import Objection, is_qualified, objections, says_number
 from annotations.language.plans.reactions import Reaction, reaction_of
 from annotations.language.plans.reading import read_primitive, read_recipe

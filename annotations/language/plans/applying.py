@@ -20,6 +20,7 @@ from annotations.language.plans.plan import (
     Value,
     Words,
 )
+from annotations.language.plans.planning import numbered_name
 from annotations.language.plans.rows import (
     ActionPattern,
     Argument,
@@ -51,8 +52,8 @@ def apply_recipes(
 
     The most specific recipe that fits is used for each action. Questions to the operator come first, while
     the robot is with them. References stand for what they refer to. A primitive is left out if all that it
-    does holds already: the robot is there, has found it here, or holds it. An action without a recipe stays
-    as it is, with a problem.
+    does holds already: the robot is there, has found it here, or holds it. An action without a recipe is done by
+    the primitive that is proposed for it, else stays as it is; both have a problem.
 
     Args:
         plan: the plan of a form, with the argument names of the language (no names of a robot).
@@ -107,9 +108,12 @@ class _Applier:
         return TaskPlan(steps, (*of_plan, *own), tuple(unresolved), self._sends_to)
 
     def _best_fit(self, step: Step) -> _Fit | None:
-        recipes = self._book.recipes_of(step.predicate)
-        fits = [fit for each in recipes if (fit := self._fit(step, each))]
+        fits = self._fits(step, self._book)
         return max(fits, key=lambda fit: fit.recipe.pattern.restrictions, default=None)
+
+    def _fits(self, step: Step, book: RecipeBook) -> list[_Fit]:
+        recipes = book.recipes_of(step.predicate)
+        return [fit for each in recipes if (fit := self._fit(step, each))]
 
     def _fit(self, step: Step, recipe: Recipe) -> _Fit | None:
         values: dict[str, Value] = {}
@@ -121,8 +125,11 @@ class _Applier:
     def _match(
         self, step: Step, pattern: ActionPattern, values: dict[str, Value], absorbed: set[int]
     ) -> bool:
-        arguments = dict(step.arguments)
         names = {each.name for each in pattern.parameters}
+        arguments = {  # a recipe may number arguments that have names
+            name if name in names else numbered_name(place): each
+            for place, (name, each) in enumerate(step.arguments)
+        }
         if step.predicate != pattern.action or names != arguments.keys():
             return False
         return all(
@@ -148,14 +155,24 @@ class _Applier:
             names = ", ".join(name for name, _ in step.arguments)
             hint = f"add a recipe for {step.predicate}({names})"
             self._situation.report(RecipeTrouble.NO_RECIPE, number, message, hint)
-            parameters = tuple(PrimitiveParameter(name) for name, _ in step.arguments)
             values = {name: self._resolved(value) for name, value in step.arguments}
-            self._situation.add(Primitive(step.action, parameters), values, step.number)
+            primitive = self._proposed(step)
+            done = self._situation.add(primitive, values, step.number, is_proposed=True)
+            if done is not None and primitive.gives_result:
+                self._numbers[step.number] = done.number
             return
         names_of = {name: self._resolved(value) for name, value in fit.values.items()}
         for call in fit.recipe.calls:
             self._do(call, names_of, step)
         self._sends_to = self._situation.sent_to if self._only_moves(fit.recipe) else None
+
+    def _proposed(self, step: Step) -> Primitive:
+        """Return what does a step without a recipe, with the parameters that it has arguments for."""
+        book = self._book.proposed or RecipeBook()
+        calls = [call for fit in self._fits(step, book) for call in fit.recipe.calls]
+        proposed = book.primitive(calls[0].primitive) if calls else None
+        parameters = tuple(PrimitiveParameter(name) for name, _ in step.arguments)
+        return proposed or Primitive(step.action, parameters)
 
     def _do(self, call: Call, names: dict[str, TaskValue], step: Step) -> None:
         primitive = self._book.primitive(call.primitive)

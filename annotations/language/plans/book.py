@@ -6,9 +6,10 @@ import re
 import tomllib
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
+from types import MappingProxyType
 
 from annotations.language.plans.behavior_tree import node_name
 from annotations.language.plans.plan import ASK
@@ -40,10 +41,14 @@ _FOLDER = Path(__file__).parent / "books"
 
 @dataclass(frozen=True)
 class RecipeBook:
-    """Primitives and recipes in the order of their rows."""
+    """Primitives and recipes in the order of their rows.
+
+    ``proposed`` are those that nobody has taken yet, for actions that no recipe covers.
+    """
 
     primitives: tuple[Primitive, ...] = ()
     recipes: tuple[Recipe, ...] = ()
+    proposed: RecipeBook | None = field(default=None, compare=False)
 
     def primitive(self, name: str) -> Primitive | None:
         """Return the primitive of a name; None if there is none."""
@@ -72,15 +77,19 @@ class RecipeBook:
         return recipes
 
     def problems(
-        self, actions: Collection[str] | None = None, classes: Collection[str] = ()
+        self,
+        actions: Collection[str] | None = None,
+        classes: Collection[str] = (),
+        arguments: Mapping[str, Collection[str]] = MappingProxyType({}),
     ) -> tuple[Problem, ...]:
         """Return what is wrong with the rows as a whole: an error for what cannot work, else a warning.
 
         Args:
             actions: the actions of the world's forms, if known; a recipe of another one is never used.
             classes: the tokens of the world's entity classes, which arguments can be restricted to.
+            arguments: what plans call the arguments of the world's actions.
         """
-        return (*self._primitive_problems(), *self._recipe_problems(actions, classes))
+        return (*self._primitive_problems(), *self._recipe_problems(actions, classes, arguments))
 
     def _primitive_problems(self) -> Iterator[Problem]:
         seen: set[str] = set()
@@ -111,7 +120,10 @@ class RecipeBook:
                 yield error_at(each.position, message, "choose another name")
 
     def _recipe_problems(
-        self, actions: Collection[str] | None, classes: Collection[str]
+        self,
+        actions: Collection[str] | None,
+        classes: Collection[str],
+        arguments: Mapping[str, Collection[str]],
     ) -> Iterator[Problem]:
         shapes = set()
         for recipe in self.recipes:
@@ -123,7 +135,7 @@ class RecipeBook:
             if known is not None and recipe.pattern.action not in known:
                 message = f"no form has the action {recipe.pattern.action}"
                 yield warning_at(recipe.position, message, "check its spelling")
-            yield from _argument_problems(recipe)
+            yield from _argument_problems(recipe, arguments)
             for kind in _kinds(recipe):
                 if classes and kind not in KINDS and kind not in classes:
                     hint = f"use a class of the world, or {', '.join(sorted(KINDS))}"
@@ -222,15 +234,17 @@ def _rows(text: str, source: str) -> Iterator[tuple[str, Position]]:
             yield row, Position(source, number, line.index(row) + 1)
 
 
-def _argument_problems(recipe: Recipe) -> Iterator[Problem]:
+def _argument_problems(
+    recipe: Recipe, arguments: Mapping[str, Collection[str]]
+) -> Iterator[Problem]:
     """Yield a warning for each argument that no plan has, so that the recipe is never used."""
     for pattern in _patterns(recipe):
         if pattern.action == ASK:
             continue
-        known = argument_names(pattern.action)
+        known = dict.fromkeys((*argument_names(pattern.action), *arguments.get(pattern.action, ())))
         for each in pattern.parameters:
             name = _NUMBER.sub("", each.name)
-            if name not in (known or ("argument",)):
+            if name not in known and each.name not in known and (known or name != "argument"):
                 said = ", ".join(known) or "argument_1, argument_2 and so on"
                 message = f"no plan has an argument “{each.name}” of {pattern.action}"
                 yield warning_at(recipe.position, message, f"plans have {said}")

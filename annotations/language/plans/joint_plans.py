@@ -768,7 +768,7 @@ class _Writer:
         arrival = self._situation.moved_by
         for step in visit.steps:
             values = dict(_with_names(step, self._numbers).arguments)
-            done = self._situation.add(step.primitive, values, step.source)
+            done = self._situation.add(step.primitive, values, step.source, step.is_proposed)
             if done is not None:
                 self._numbers[step.number] = done.number
                 self._serves.append({command.number})
@@ -782,13 +782,14 @@ class _Writer:
     def _return_to(self, visit: _Visit, command: int) -> None:
         """Go back to where a command goes on; a visit that begins with a move does so itself."""
         start = visit.start
-        if _has(visit.steps[0], EffectKind.MOVES) or isinstance(start, Somewhere):
+        first = visit.steps[0]
+        if _has(first, EffectKind.MOVES) or first.is_proposed or isinstance(start, Somewhere):
             return
         moves = self._mover.effect(EffectKind.MOVES) if self._mover else None
         if self._mover is None or moves is None:
             return
         place = with_results(start, self._numbers)
-        if self._situation.add(self._mover, {moves.subject: place}, visit.steps[0].source):
+        if self._situation.add(self._mover, {moves.subject: place}, first.source):
             self._serves.append({command})
 
     def _doer(self, step: TaskStep, values: Mapping[str, TaskValue]) -> int:

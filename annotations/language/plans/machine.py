@@ -303,8 +303,12 @@ def state_with_prompt(
 
 def shall_i(said: str) -> str:
     """Return the question whether to do what the English of a form says."""
-    words = re.sub(r"\bme\b", "you", said)
-    return f"Shall I {words}?"
+    return f"Shall I {as_robot_says(said)}?"
+
+
+def as_robot_says(said: str) -> str:
+    """Return what somebody asks of the robot, as the robot says it of itself: "bring me" is "bring you"."""
+    return re.sub(r"\bme\b", "you", said)
 
 
 def progress(state: DialogueState) -> tuple[int, int, int, int]:

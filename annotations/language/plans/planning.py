@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import count
+from itertools import chain, count
 
 from annotations.language.forms import (
     ANTECEDENTS,
@@ -53,6 +53,7 @@ from annotations.language.plans.plan import (
     Value,
     Words,
 )
+from annotations.language.plans.rows import OPERATOR_WORD
 from annotations.language.plans.unresolved import COMMAND, Gaps, said_words
 from annotations.language.texts import ARGUMENT_NAMES, NEEDED_ARGUMENTS
 from annotations.language.world import (
@@ -287,17 +288,12 @@ class _Planner:
         for place, argument in enumerate(gathered):
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""
-            name = argument_name(action, place, argument, entity_class)
+            declared = self.lookup.predicates.get(action)
+            name = argument_name(action, place, argument, entity_class, declared)
             value = self._asked(value, name, place, argument)
             if name not in _PLACE_ARGUMENTS:
                 said.append((argument, value))
-            numbered = (f"{name}_{number}" for number in count(2))
-            free = (
-                name
-                if name not in arguments
-                else next(each for each in numbered if each not in arguments)
-            )
-            arguments[free] = value
+            arguments[free_name(name, arguments)] = value
         for name in NEEDED_ARGUMENTS.get(action, ()):
             if name not in arguments:
                 place = max(place_of_argument(action, name), len(gathered))
@@ -476,7 +472,10 @@ class _Planner:
         self, predicate: str, arguments: Mapping[str, Value], text: str, gives_result: bool = False
     ) -> int:
         names = self.names.get(predicate, ActionName(predicate))
-        renamed = tuple((names.arguments.get(name, name), each) for name, each in arguments.items())
+        renamed = tuple(
+            (names.arguments.get(name, names.arguments.get(numbered_name(place), name)), each)
+            for place, (name, each) in enumerate(arguments.items())
+        )
         number = len(self.steps) + 1
         self.steps.append(Step(number, names.name, predicate, renamed, text, gives_result))
         return number
@@ -520,15 +519,22 @@ def argument_names(action: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for each in lists for name in each))
 
 
-def argument_name(action: str, place: int, argument: Form, entity_class: str = "") -> str:
+def argument_name(
+    action: str,
+    place: int,
+    argument: Form,
+    entity_class: str = "",
+    declared: Predicate | None = None,
+) -> str:
     """Return the name of an argument: ``destination`` for the second one of ``guide``.
 
-    ``entity_class`` is that of a text that names an entity. An action that is not known calls its
-    arguments ``argument_1``, ``argument_2``, ….
+    ``entity_class`` is that of a text that names an entity. An argument that has no word of its own is called by the
+    kind that the action is ``declared`` to take: by its class, such as ``plant``, else ``thing``, ``text`` or
+    ``number``; else ``argument_1``, ``argument_2``, ….
     """
     names = ARGUMENT_NAMES.get(action, ())
     if place >= len(names):
-        return f"argument_{place + 1}"
+        return _name_by_kind(place, declared)
     name = names[place]
     if isinstance(name, str):
         return name
@@ -544,4 +550,37 @@ def argument_name(action: str, place: int, argument: Form, entity_class: str = "
         said = "person" if predicates & PERSON_PREDICATES else "thing"
     else:
         said = "name" if "name" in (kind, entity_class) else "text"
-    return name.get(said) or name.get("") or f"argument_{place + 1}"
+    return name.get(said) or name.get("") or numbered_name(place)
+
+
+def _name_by_kind(place: int, declared: Predicate | None) -> str:
+    signatures = declared.signatures if declared else ()
+    kinds = {each.arguments[place] for each in signatures if each.arguments[place:]}
+    kinds -= {ArgumentKind.ANY, ArgumentKind.UNKNOWN, ArgumentKind.VARIABLE}
+    if len(kinds) > 1:  # what is named may be described as well
+        kinds.discard(ArgumentKind.LAMBDA)
+    kind = kinds.pop() if len(kinds) == 1 else ArgumentKind.FORM
+    if kind in (ArgumentKind.FORM, OPERATOR_WORD):
+        return numbered_name(place)
+    return THING if kind == ArgumentKind.LAMBDA else str(kind)
+
+
+def numbered_name(place: int) -> str:
+    """Return what an argument is called that has no other name."""
+    return f"argument_{place + 1}"
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """Return a name that is not taken, with a number behind it if need be."""
+    names = chain((name,), (f"{name}_{number}" for number in count(2)))
+    return next(each for each in names if each not in taken)
+
+
+def arguments_of(use: Application, declared: Predicate) -> tuple[str, ...]:
+    """Return what plans call the arguments of an action that is used like this, in order."""
+    names: list[str] = []
+    for place, argument in enumerate(use.arguments):
+        name = argument_name(declared.name, place, argument, declared=declared)
+        names.append(free_name(name, names))
+    needed = NEEDED_ARGUMENTS.get(declared.name, ())  # the operator is asked for them
+    return (*names, *(each for each in needed if each not in names))

@@ -108,13 +108,17 @@ class Situation:
             return True
         return are_equal(place, self.place)
 
-    def add(self, primitive: Primitive, arguments: Arguments, source: int) -> TaskStep | None:
+    def add(
+        self, primitive: Primitive, arguments: Arguments, source: int, is_proposed: bool = False
+    ) -> TaskStep | None:
         """Do one primitive.
 
         Args:
             primitive: what to do.
             arguments: the values of its parameters by name.
             source: the step of the form's plan that it belongs to.
+            is_proposed: nobody has written what it does, so that nobody knows where the robot is then, and what
+                is there. It stays between what comes before and after it.
 
         Returns:
             The step; None if all that it does holds already.
@@ -125,7 +129,11 @@ class Situation:
             return None
         number = len(self.steps) + 1
         requires = self._requirements(primitive, values)
+        if is_proposed:
+            requires |= self._last_here
         releases = self._change(primitive, values, number, requires)
+        if is_proposed:
+            self._move(Somewhere(number), number)
         step = TaskStep(
             number,
             primitive,
@@ -136,6 +144,7 @@ class Situation:
             releases,
             tuple(sorted(requires)),
             source,
+            is_proposed,
         )
         self.steps.append(step)
         return step

@@ -58,7 +58,7 @@ class TaskStep:
     ``place`` is where the robot is when the step is done; None where nobody knows, as behind a person who
     leads. ``holds`` is what it holds then, ``releases`` what the step lets go. ``requires`` are the
     numbers of the steps without which this one cannot be done. ``source`` is the number of the step of the
-    form's plan that it belongs to.
+    form's plan that it belongs to. It ``is_proposed`` where no recipe says so: nobody has written what it does.
     """
 
     number: int
@@ -70,6 +70,7 @@ class TaskStep:
     releases: TaskValue | None = None
     requires: tuple[int, ...] = ()
     source: int = 0
+    is_proposed: bool = False
 
     @property
     def action(self) -> str:
@@ -92,6 +93,7 @@ class TaskStep:
             "requires": list(self.requires),
             "gives_result": self.gives_result,
             "source": self.source,
+            **({"is_proposed": True} if self.is_proposed else {}),
         }
 
 

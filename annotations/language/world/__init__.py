@@ -31,7 +31,9 @@ from annotations.language.world.predicates import (
     find_misuses,
     gloss,
     infer_signatures,
+    said_of,
     sample_forms,
+    sample_use,
 )
 from annotations.language.world.published_generators import (
     PUBLISHED_GENERATORS,

@@ -15,7 +15,7 @@ wins, then the one that says most about their kinds, then the first. In an alter
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -35,6 +35,14 @@ class PatternSlot:
     place: int | None
     kind: str = ""
     value: str = ""
+
+    def with_names(self, names: Sequence[str]) -> str:
+        """Return the argument as ``{plant}``, by its name, or as ``{plants:plural}``; empty for what is not said."""
+        if self.place is None:
+            return ", then ".join(f"{{{each}}}" for each in names)
+        if self.value or self.place >= len(names):
+            return ""
+        return f"{{{names[self.place]}{':plural' if self.kind == 'plural' else ''}}}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import chain
 
 from rapidfuzz.distance import Indel
 from rapidfuzz.process import extractOne
@@ -24,8 +25,15 @@ from annotations.language.forms import (
 )
 from annotations.language.texts import MAX_GLOSS, Position, Problem, say_count, warning_at
 from annotations.language.world.asking import question
-from annotations.language.world.gloss_patterns import ALL_IN_ORDER, default_pattern, lengthen
-from annotations.language.world.glossing import Scope, sentence
+from annotations.language.world.gloss_patterns import (
+    ALL_IN_ORDER,
+    GlossAlternative,
+    PatternSlot,
+    default_pattern,
+    lengthen,
+    read_pattern,
+)
+from annotations.language.world.glossing import Scope, choose, sentence
 from annotations.language.world.signatures import (
     ArgumentKind,
     Signature,
@@ -61,6 +69,12 @@ class Predicate:
     def is_action(self) -> bool:
         """Whether it is something to do, alone or in a sequence."""
         return self.kind is not PredicateKind.DESCRIPTION
+
+    @property
+    def says_noun(self) -> bool:
+        """Whether it says what kind of thing something is: its pattern has its second argument and no word."""
+        alternatives = () if self.is_action else read_pattern(self.gloss or _default(self))
+        return any(each.pieces == (PatternSlot(1),) for each in alternatives)
 
 
 def infer_signatures(forms: Iterable[Form]) -> dict[str, Predicate]:
@@ -259,32 +273,90 @@ def _misuse(node: int, form: Application, predicates: Mapping[str, Predicate]) -
     return Misuse(node + 1 + before, message, f"write {choices}")
 
 
-def sample_forms(predicate: Predicate) -> Iterator[Form]:
-    """Yield a form with class tokens for each signature; a description stands in ``find``."""
+def sample_forms(
+    predicate: Predicate,
+    predicates: Mapping[str, Predicate] | None = None,
+    classes: EntityClasses = DEFAULT_CLASSES,
+) -> Iterator[Form]:
+    """Yield a form with class tokens for each signature, made of what the world has.
+
+    A description stands in the first action that takes one, or alone where the world has none.
+    """
+    predicates = predicates or {}
     for signature in predicate.signatures:
-        kinds = signature.arguments
-        arguments = tuple(
-            _argument(ArgumentKind.ANY if kind in kinds[:place] and kind == "variable" else kind)
-            for place, kind in enumerate(kinds)
-        )
-        form = Application(predicate.name, arguments)
-        takes_variable = ArgumentKind.VARIABLE in signature.arguments
-        if predicate.is_action and not takes_variable:
+        form = sample_use(predicate, signature, predicates, classes)
+        if predicate.is_action and ArgumentKind.VARIABLE not in signature.arguments:
             yield form
         else:
-            yield Application("find", (Lambda(1, "e", (form,)),))
+            described = Lambda(1, "e", (form,))
+            action = _first_taking(predicates, (ArgumentKind.LAMBDA,))
+            yield Application(action, (described,)) if action else described
 
 
-def _argument(kind: str) -> Form:
-    if is_entity_kind(kind):
-        return Constant(f"<{kind}>")
-    thing = Constant("<object>")
-    others: dict[str, Form] = {
+def sample_use(
+    predicate: Predicate,
+    signature: Signature,
+    predicates: Mapping[str, Predicate] | None = None,
+    classes: EntityClasses = DEFAULT_CLASSES,
+) -> Application:
+    """Return the predicate with class tokens and the like as its arguments."""
+    kinds = signature.arguments
+    samples = _samples(predicates or {}, classes)
+    arguments = (
+        Constant(f"<{kind}>")
+        if is_entity_kind(kind)
+        else samples[ArgumentKind.ANY if kind == "variable" in kinds[:place] else kind]
+        for place, kind in enumerate(kinds)
+    )
+    return Application(predicate.name, tuple(arguments))
+
+
+def said_of(use: Application, predicate: Predicate, names: Sequence[str]) -> tuple[str, str]:
+    """Return how a use of an action is said, and what it is called inside another action; empty where it has no
+    words for that.
+
+    ``names`` stand in braces in place of its arguments: ``water {plant} in {bed}``.
+    """
+    pattern = lengthen(predicate.gloss or _default(predicate), True, predicate.signatures)
+    scope = Scope({predicate.name: pattern}, frozenset((predicate.name,)), DEFAULT_CLASSES)
+
+    def text(alternative: GlossAlternative) -> str:
+        pieces = (
+            each if isinstance(each, str) else each.with_names(names) for each in alternative.pieces
+        )
+        return " ".join("".join(pieces).split())
+
+    nested = choose(use, scope, is_nested=True)
+    return text(choose(use, scope)), text(nested) if nested.is_nested else ""
+
+
+def _samples(predicates: Mapping[str, Predicate], classes: EntityClasses) -> Mapping[str, Form]:
+    """Return an argument of each kind that every world has."""
+    signatures = (each.signatures for each in predicates.values())
+    taken = {kind for each in chain.from_iterable(signatures) for kind in each.arguments}
+    token = next((each for each in classes.tokens if each in taken), next(iter(classes.tokens), ""))
+    thing: Form = Constant(f"<{token}>") if token else UNKNOWN
+    noun = next((name for name, each in predicates.items() if each.says_noun), "")
+    action = _first_taking(predicates, (token,))
+    bodies = (Application(noun, (Variable(2), thing)),) if noun else ()
+    return {
         ArgumentKind.VARIABLE: Variable(1),
-        ArgumentKind.LAMBDA: Lambda(2, "e", (Application("is_a", (Variable(2), thing)),)),
-        ArgumentKind.FORM: Application("go", (Constant("<room>"),)),
+        ArgumentKind.LAMBDA: Lambda(2, "e", bodies) if bodies else thing,
+        ArgumentKind.FORM: Application(action, (thing,)) if action else thing,
         ArgumentKind.NUMBER: Constant(2),
         ArgumentKind.TEXT: Constant("something"),
         ArgumentKind.UNKNOWN: UNKNOWN,
+        ArgumentKind.ANY: thing,
     }
-    return others.get(kind, thing)
+
+
+def _first_taking(predicates: Mapping[str, Predicate], kinds: tuple[str, ...]) -> str:
+    """Return the first action that takes these kinds of arguments and no more; empty where none does."""
+    return next(
+        (
+            name
+            for name, each in predicates.items()
+            if each.kind is PredicateKind.ACTION and Signature(kinds) in each.signatures
+        ),
+        "",
+    )

@@ -9,10 +9,15 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.editing.recipe_books import replace_book, shipped_book_of
+from annotations.editing.recipe_books import (
+    proposals_for,
+    replace_book,
+    shipped_book_of,
+    take_proposals,
+)
 from annotations.generation.recipe_check import FIELD, try_row
 from annotations.language.plans import RecipeBook, shipped_books
-from annotations.language.texts import MAX_ROW
+from annotations.language.texts import MAX_PREDICATE, MAX_ROW
 from annotations.models import Duty, Primitive, Recipe, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.rows.from_rows import recipe_book_of
@@ -195,6 +200,43 @@ class OneRecipeBook(WorldRoute):
     def _shown(self) -> dict[str, Any]:
         shipped, book = shipped_book_of(self.world), recipe_book_of(self.world)
         return {"shipped": shipped.name if shipped else "", **_rows_of(book)}
+
+
+class ProposedRows(serializers.Serializer[Any]):
+    """Recipes for the actions that none covers, and the primitives that they call."""
+
+    primitives = serializers.ListField(child=serializers.CharField())
+    recipes = serializers.ListField(child=serializers.CharField())
+
+
+class ActionsToCover(Fields):
+    """The actions whose recipes to add; without it, all."""
+
+    actions = serializers.ListField(
+        child=LineField(max_length=MAX_PREDICATE), max_length=MOST_ROWS, required=False
+    )
+
+
+class ProposedRecipes(WorldRoute):
+    """Shows what is proposed for the actions that no recipe covers, and adds it to the book of the world."""
+
+    filter_backends = []
+    pagination_class = None
+    duties = {"POST": Duty.ANNOTATE}
+
+    @extend_schema(operation_id="proposed_recipes", responses={200: ProposedRows})
+    def get(self, request: ApiRequest, **kwargs: object) -> Response:
+        return Response(_rows_of(proposals_for(self.world)))
+
+    @extend_schema(
+        operation_id="take_proposed_recipes",
+        request=ActionsToCover,
+        responses={200: ProposedRows},
+    )
+    def post(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Answers the rows that were added."""
+        sent = self.read(ActionsToCover)
+        return Response(_rows_of(take_proposals(self.world, request.user, sent.get("actions"))))
 
 
 class ShippedBookSerializer(serializers.Serializer[Any]):

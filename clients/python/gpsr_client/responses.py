@@ -146,7 +146,7 @@ class TaskStep:
 
     ``arguments``, ``place``, ``holds`` and ``releases`` are values as docs/reference/plans.md has them.
     ``requires`` are the numbers of the steps that have to come before it, ``source`` is that of the step of
-    the plan that it belongs to.
+    the plan that it belongs to. It ``is_proposed`` where no recipe of the world says how to do it.
     """
 
     number: int
@@ -159,6 +159,7 @@ class TaskStep:
     requires: tuple[int, ...]
     gives_result: bool
     source: int
+    is_proposed: bool = False
 
     @classmethod
     def from_json(cls, value: dict[str, Any]) -> TaskStep:
@@ -173,6 +174,7 @@ class TaskStep:
             tuple(value["requires"]),
             value["gives_result"],
             value["source"],
+            value.get("is_proposed", False),
         )
 
 

@@ -26,6 +26,7 @@ READABLE = (
         "primitive-detail",
         "recipe-book",
         "shipped-books",
+        "proposed-recipes",
         "task-categories",
         "production-list",
     ),
@@ -260,6 +261,7 @@ API_POLICY = [
     ),
     # Admins say who does what
     Rule("api:recipe-book", *annotators(NO_VERSION), method="patch"),
+    Rule("api:proposed-recipes", *annotators(NO_JSON), method="post"),
     Rule("api:guidelines", *admins(NO_VERSION), method="patch"),
     Rule("api:queue-settings", *admins(YES)),
     Rule("api:queue-settings", *admins(NO_VERSION), method="patch"),

@@ -81,6 +81,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "recipe_preview": "post check-recipe",
     "primitive_preview": "post check-primitive",
     "recipe_book": "patch recipe-book",
+    "recipes_proposed": "post proposed-recipes",
     "predicate_preview": "post check-predicate",
     "production_check": "post check-production",
     "production_preview": "post check-production",
@@ -195,7 +196,8 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "ontology": "get entity-list",
     "entity_classes": "get entity-class-list",
     "class_colours": NoRoute("The route of classes gives their hues."),
-    "recipes": "get recipe-list, get primitive-list, get recipe-book, get shipped-books",
+    "recipes": "get recipe-list, get primitive-list, get recipe-book, get shipped-books, "
+    "get proposed-recipes",
     "predicates": "get predicate-list",
     "grammar": "get production-list",
     "coverage": "get task-categories",

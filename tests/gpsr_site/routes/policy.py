@@ -191,7 +191,10 @@ POLICY = [
     ),
     *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new")),
     *(Rule(name, *ANNOTATORS, method="post") for name in ("recipe_new", "primitive_new")),
-    Rule("recipe_book", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    *(
+        Rule(name, LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post")
+        for name in ("recipe_book", "recipes_proposed")
+    ),
     Rule("predicate", *MEMBERS),
     Rule("predicate", *ANNOTATORS, method="post"),
     Rule("predicate_new", *ANNOTATORS),

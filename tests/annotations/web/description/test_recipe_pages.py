@@ -7,6 +7,7 @@ import pytest
 from annotations.language.plans import DEFAULT_BOOK, default_book, shipped_books
 from annotations.models import Recipe
 from annotations.rows.from_rows import recipe_book_of
+from tests.greenhouse import fill_greenhouse
 from tests.notices import levels
 from tests.sample_world import fill_world
 
@@ -147,3 +148,35 @@ def test_a_deleted_recipe_comes_back(browse, world, go):
     entry = Recipe.history.filter(id=go.pk).first()
     browse.post(f"/w/home/history/recipe/{go.pk}/", {"entry": entry.history_id})
     assert recipe_book_of(world) == default_book()
+
+
+def test_recipes_are_proposed_for_a_greenhouse_and_taken_with_a_click(browse, world):
+    fill_greenhouse(world)
+    before = recipe_book_of(world)
+    page = browse.get(PAGE)
+    actions = [value.pattern.action for value, _ in page.context["proposed"]]
+    assert sorted(actions) == ["fetch", "prune", "scan_shelf", "water", "water"]
+    assert all(primitives for _, primitives in page.context["proposed"])
+    page = browse.post(f"{PAGE}proposed/", {"action": "water"}, follow=True)
+    assert levels(page) == ["success"] and len(page.context["proposed"]) == 3
+    assert not any(problems for _, _, problems in page.context["recipes"])
+    assert world.primitives.get(name="water").history.count() == 1
+    page = browse.post(f"{PAGE}proposed/", follow=True)
+    assert not page.context["proposed"] and world.recipes.count() == len(before.recipes) + 5
+    again = browse.post(f"{PAGE}proposed/", follow=True)
+    assert levels(again) == ["error"] and again.context["version"] == page.context["version"]
+    undo = {
+        "primitives": "\n".join(map(str, before.primitives)),
+        "recipes": "\n".join(map(str, before.recipes)),
+        "version": page.context["version"],
+    }
+    browse.post(f"{PAGE}book/", undo)
+    assert recipe_book_of(world) == before
+
+
+def test_a_world_without_rows_gets_those_that_it_uses_with_what_is_proposed(browse, world):
+    fill_greenhouse(world)
+    world.recipes.all().delete()
+    world.primitives.all().delete()
+    browse.post(f"{PAGE}proposed/", {"action": "fetch"})
+    assert world.recipes.count() == len(default_book().recipes) + 1

@@ -7,6 +7,7 @@ import pytest
 
 from annotations.language.plans import DEFAULT_BOOK, default_book, shipped_books, task_plan_schema
 from annotations.rows.from_rows import recipe_book_of
+from tests.greenhouse import fill_greenhouse
 from tests.sample_world import fill_world
 
 API = "/api/v1/worlds/home/"
@@ -92,3 +93,21 @@ def test_a_form_becomes_a_task_plan(browse):
     assert "kitchen" in answer["spoken"]
     tree = browse.post(f"{API}task-plan/", {**sent, "as": "xml"}, JSON)
     assert b'ID="go_to"' in tree.content
+
+
+def test_what_is_proposed_is_taken_action_by_action_or_all_at_once(browse, world):
+    fill_greenhouse(world)
+    address = f"{API}recipe-book/proposed/"
+    assert len(browse.get(address).json()["recipes"]) == 5
+    added = browse.post(address, {"actions": ["fetch"]}, JSON).json()
+    assert added == {
+        "primitives": ['fetch(tool) "fetch {tool}"'],
+        "recipes": ["fetch(tool) -> fetch(tool)"],
+    }
+    assert len(browse.post(address, {}, JSON).json()["recipes"]) == 4
+    assert browse.get(address).json() == {"primitives": [], "recipes": []}
+    assert browse.post(address, {}, JSON).json() == {"primitives": [], "recipes": []}
+    assert world.recipes.get(left="fetch(tool)").history.count() == 1
+    sent = {"form": '( water " basil " " last bed " )'}
+    answer = browse.post(f"{API}task-plan/", sent, JSON).json()
+    assert answer["task_plan"]["is_executable"]
