@@ -36,7 +36,7 @@ class Lookup:
     def __init__(self, ontology: Ontology, predicates: Mapping[str, Predicate]) -> None:
         self.classes = ontology.classes
         self.class_of_text = ontology.class_of_text
-        self.predicates = predicates
+        self._predicates = predicates
         self._locations = ontology.of_class("location")
         self._rows: defaultdict[str, list[Entity]] = defaultdict(list)
         for entity in ontology.entities:
@@ -49,7 +49,7 @@ class Lookup:
 
     def value(self, text: str, predicate: str, place: int) -> tuple[Value, bool]:
         """Return the value of a text as an argument, and whether an entity was expected but not found."""
-        declared = self.predicates.get(predicate)
+        declared = self._predicates.get(predicate)
         if declared is None or not declared.signatures:
             kinds = _KINDS.get((predicate, place), frozenset())
         else:

@@ -98,7 +98,7 @@ def make_plan(
     """
     known = declared_or_inferred(predicates or {}, form)
     lookup = lookup or Lookup(ontology, predicates or {})
-    planner = _Planner(lookup, known, action_names or {}, form, utterance, slots)
+    planner = _Planner(lookup, known, predicates or {}, action_names or {}, form, utterance, slots)
     planner.problems += _doubts_about(slots)
     planner.add(form)
     unresolved = tuple(planner.gaps.unresolved(planner.steps))
@@ -196,6 +196,7 @@ class _Planner:
 
     lookup: Lookup
     predicates: Mapping[str, Predicate]
+    declared: Mapping[str, Predicate]  # those that the form does not tell by itself
     names: Mapping[str, ActionName]
     form: Form
     utterance: str
@@ -288,7 +289,7 @@ class _Planner:
         for place, argument in enumerate(gathered):
             value = self._value(argument, action, place, scope)
             entity_class = value.entity_class if isinstance(value, Named) else ""
-            declared = self.lookup.predicates.get(action)
+            declared = self.declared.get(action)
             name = argument_name(action, place, argument, entity_class, declared)
             value = self._asked(value, name, place, argument)
             if name not in _PLACE_ARGUMENTS:
