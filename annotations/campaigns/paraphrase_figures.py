@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from time import monotonic
 from typing import Any
 
 from django.db.models import Count
@@ -16,10 +17,12 @@ from annotations.language.corpus import expected_vocabulary, vocabulary_growth
 from annotations.language.texts import folded_words
 from annotations.models import Campaign, World
 from annotations.models.campaigns import ContributorKind
+from annotations.showing.kept import MOST_COUNTED, Kept
 
 TARGET_PER_FORM, MOST_WANTED = 10, 1_000
 SAMPLE = 100  # paraphrases whose vocabulary is compared
 MOST_POINTS = 40  # of a curve
+MOST_KEPT = 16  # figures of worlds and campaigns that a process keeps
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +90,8 @@ class CategoryCount:
 
 @dataclass(frozen=True, slots=True)
 class ParaphraseFigures:
-    """``sample`` is the number of paraphrases whose vocabulary is compared; 0 where one side has none."""
+    """``sample`` is the number of paraphrases whose vocabulary is compared; 0 where one side has none. ``age`` is the
+    seconds since they were counted."""
 
     people: ParaphrasesBy
     models: ParaphrasesBy
@@ -95,6 +99,11 @@ class ParaphraseFigures:
     target: int
     sample: int
     published: PublishedMeans = PublishedMeans()
+    age: float = 0
+
+    @property
+    def minutes_old(self) -> int:
+        return int(self.age / 60)
 
     @property
     def count(self) -> int:
@@ -135,8 +144,23 @@ def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigu
     """Return the figures of the accepted paraphrases of ``world``, or of those that came by ``campaign``.
 
     A form is short where it has fewer than the target of the campaign, or ``TARGET_PER_FORM``, counting
-    the paraphrases of the world.
+    the paraphrases of the world. Figures of very many paraphrases are kept for a while.
     """
+    key = (world.pk, campaign.pk if campaign else None, target_of(campaign))
+    kept = _kept.get(key)
+    if kept and not kept.is_due():
+        return replace(kept.value, age=kept.age)
+    began = monotonic()
+    figures = _count(world, campaign)
+    if figures.count > MOST_COUNTED:
+        _kept.pop(key, None)
+        _kept[key] = Kept(figures, began, monotonic() - began)
+        while len(_kept) > MOST_KEPT:
+            _kept.pop(next(iter(_kept)), None)
+    return figures
+
+
+def _count(world: World, campaign: Campaign | None) -> ParaphraseFigures:
     import pandas
 
     accepted = world.paraphrases.accepted().order_by("position")
@@ -164,6 +188,10 @@ def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigu
         target=target_of(campaign),
         sample=sample,
     )
+
+
+# By world, campaign and target; the one that was counted longest ago comes first.
+_kept: dict[tuple[int, int | None, int], Kept[ParaphraseFigures]] = {}
 
 
 def target_of(campaign: Campaign | None) -> int:

@@ -50,6 +50,7 @@ from annotations.models import (
 from annotations.models.background import Status as RunStatus
 from annotations.models.corpus import ParaphraseStatus
 from annotations.models.description import ProblemSubject, TemplateStatus
+from annotations.showing.kept import MOST_COUNTED, Kept
 from parser_service.models import Promotion, TrainingRun
 
 # What a world may have very many of.
@@ -57,12 +58,7 @@ LARGE = (
     *("commands", "command_problems", "forms", "paraphrases", "paraphrases_waiting"),
     *("utterances", "utterances_waiting", "work_items", "work_items_free", "audit_findings"),
 )
-MOST_COUNTED = 10_000  # rows of these together that are counted for each page
 MOST_EXACT = 1_000  # free work items; nobody may be told that there is work where there is none
-# For how many times the seconds of counting a process keeps the numbers; the second where a job has ended since, or
-# commands have been generated: what changes most of the rows at once.
-SHARE, SHARE_AFTER_JOB = 50, 5
-MOST_SECONDS = 600.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,22 +127,8 @@ class Counts:
 Stamp = tuple[int, int]  # how often commands were generated, and the newest job that has ended
 
 
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """The numbers of ``LARGE`` of a world. ``stamp`` is what had last changed most of them ``counted_at`` that
-    second, which took some ``seconds``."""
-
-    numbers: dict[str, int]
-    stamp: Stamp
-    counted_at: float
-    seconds: float
-
-    def is_due(self, stamp: Stamp, now: float) -> bool:
-        share = SHARE if stamp == self.stamp else SHARE_AFTER_JOB
-        return now - self.counted_at >= min(share * self.seconds, MOST_SECONDS)
-
-
-_kept: dict[int, _Kept] = {}  # of the worlds with more than MOST_COUNTED rows, by key
+# ``LARGE`` of the worlds with more than MOST_COUNTED rows, by key.
+_kept: dict[int, Kept[dict[str, int]]] = {}
 _in_hand: set[int] = set()  # the keys of those that a thread counts anew; others take what is kept
 
 
@@ -164,24 +146,22 @@ def counts_of_all(worlds: QuerySet[World]) -> dict[int, Counts]:
     small = _count(_small_statement(), keys, chosen)
     stamps = {key: (each.pop("generations"), each.pop("job")) for key, each in small.items()}
     large = _large_numbers(stamps)
-    now = monotonic()
     counted = {}
     for key, numbers in small.items():
         some_free, kept = numbers.pop("some_free"), large[key]
-        free = kept.numbers["work_items_free"]
+        free = kept.value["work_items_free"]
         exact = some_free if some_free < MOST_EXACT else max(some_free, free)
-        age = now - kept.counted_at
-        counted[key] = Counts(**{**numbers, **kept.numbers, "work_items_free": exact}, age=age)
+        counted[key] = Counts(**{**numbers, **kept.value, "work_items_free": exact}, age=kept.age)
     return counted
 
 
-def _large_numbers(stamps: dict[int, Stamp]) -> dict[int, _Kept]:
+def _large_numbers(stamps: dict[int, Stamp]) -> dict[int, Kept[dict[str, int]]]:
     """Return the numbers of ``LARGE`` of the worlds with these keys, counted now or kept."""
     began = monotonic()
     large = {
         key: kept
         for key, stamp in stamps.items()
-        if (kept := _kept.get(key)) and (key in _in_hand or not kept.is_due(stamp, began))
+        if (kept := _kept.get(key)) and (key in _in_hand or not kept.is_due(stamp))
     }
     if not (missing := [key for key in stamps if key not in large]):
         return large
@@ -195,7 +175,7 @@ def _large_numbers(stamps: dict[int, Stamp]) -> dict[int, _Kept]:
     for key in missing:
         numbers = counted.get(key) or dict.fromkeys(LARGE, 0)  # deleted this moment
         rows = sum(numbers.values())
-        large[key] = _Kept(numbers, stamps[key], began, seconds * rows / max(total, 1))
+        large[key] = Kept(numbers, began, seconds * rows / max(total, 1), stamps[key])
         if rows > MOST_COUNTED:
             _kept[key] = large[key]
         else:

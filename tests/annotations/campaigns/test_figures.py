@@ -6,6 +6,7 @@ from statistics import fmean, median
 
 import pytest
 
+from annotations.campaigns import paraphrase_figures
 from annotations.campaigns.answering import save_answer
 from annotations.campaigns.contributor_figures import contributors_of
 from annotations.campaigns.moderation import accept, reject
@@ -16,6 +17,7 @@ from annotations.language.corpus import distance
 from annotations.language.corpus.proportions import wilson_interval
 from annotations.models import LogicalForm, Paraphrase
 from annotations.models.campaigns import Contributor, ContributorKind
+from annotations.showing import kept
 from tests.launched_campaigns import small_campaign
 from tests.sample_world import make_paraphrase
 
@@ -53,6 +55,26 @@ def test_the_published_records_have_their_means(tiny_world, tmp_path):
     assert figures.people.edits == pytest.approx(figures.published.edits, abs=1)
     assert figures.people.jaccard == pytest.approx(figures.published.jaccard, abs=0.05)
     assert sum(figures.people.edit_counts) == sum(figures.people.jaccard_counts) == 1_300
+
+
+def test_figures_of_few_paraphrases_are_counted_each_time(world):
+    make_paraphrase(world, "go now")
+    assert figures_of(world).count == 1
+    make_paraphrase(world, "go there")
+    assert figures_of(world).count == 2
+
+
+def test_figures_of_many_paraphrases_are_kept_for_a_while(world, monkeypatch):
+    monkeypatch.setattr(paraphrase_figures, "MOST_COUNTED", 0)
+    monkeypatch.setattr(paraphrase_figures, "_kept", {})
+    monkeypatch.setattr(kept, "SHARE", 1_000_000)
+    make_paraphrase(world, "go now")
+    before = figures_of(world)
+    make_paraphrase(world, "go there")
+    assert figures_of(world).count == before.count == 1
+    assert figures_of(world).age > before.age == 0
+    monkeypatch.setattr(kept, "MOST_SECONDS", 0)
+    assert figures_of(world).count == 2
 
 
 def test_a_world_without_paraphrases_has_empty_figures(world):

@@ -13,6 +13,7 @@ from annotations.labelling.enqueuing import WantedItem, enqueue
 from annotations.labelling.label_answers import label, take_back_label
 from annotations.models import Job, Verdict, WorkItem, WorkKind, World
 from annotations.models.background import Status
+from annotations.showing import kept
 from gpsr_site.overview import counts
 from gpsr_site.overview.counts import LARGE, counts_of, counts_of_all
 from tests.sample_world import paraphrase_in
@@ -31,8 +32,8 @@ def _nothing_kept():
 def large(sample, monkeypatch):
     """A world whose numbers are kept for as long as nothing of the clock or the jobs says otherwise."""
     monkeypatch.setattr(counts, "MOST_COUNTED", 0)
-    monkeypatch.setattr(counts, "SHARE", 1_000_000)
-    monkeypatch.setattr(counts, "SHARE_AFTER_JOB", 0)
+    monkeypatch.setattr(kept, "SHARE", 1_000_000)
+    monkeypatch.setattr(kept, "SHARE_AFTER_CHANGE", 0)
     collect(sample.world, ["would you find me the tea", "go to the kitchen"])
     counts_of(sample.world)
     return sample.world
@@ -81,7 +82,7 @@ def test_large_numbers_are_kept_and_small_ones_are_not(large, django_assert_num_
 
 def test_kept_numbers_are_renewed_when_they_are_old(large, monkeypatch):
     collect(large, ["bring me the tea"])
-    monkeypatch.setattr(counts, "MOST_SECONDS", 0)
+    monkeypatch.setattr(kept, "MOST_SECONDS", 0)
     assert replace(counts_of(large), age=0) == counted_afresh(large)
 
 
@@ -121,7 +122,7 @@ def test_of_very_many_free_items_the_kept_number_is_told(large, monkeypatch):
 
 def test_while_one_thread_counts_others_take_what_is_kept(large, monkeypatch):
     collect(large, ["bring me the tea"])
-    monkeypatch.setattr(counts, "MOST_SECONDS", 0)
+    monkeypatch.setattr(kept, "MOST_SECONDS", 0)
     monkeypatch.setattr(counts, "_in_hand", {large.pk})
     assert counts_of(large).utterances == 2
 
@@ -143,8 +144,8 @@ def test_the_rail_says_how_old_a_number_is_once_that_is_minutes(large, annotator
         return {link.label: link.counted for group in groups for link in group.links}
 
     assert not any(said().values())
-    kept = counts._kept[large.pk]
-    counts._kept[large.pk] = replace(kept, counted_at=kept.counted_at - 200, seconds=1e6)
+    now = counts._kept[large.pk]
+    counts._kept[large.pk] = replace(now, counted_at=now.counted_at - 200, seconds=1e6)
     told = said()
     assert "3" in told["Utterances"]
     assert not told["Splits"]
