@@ -13,11 +13,13 @@ process); statements; what the database read (``tests.database_work``). Each pag
 ``--statements`` prints those that take longer than so many seconds. At last the world is deleted.
 
 On PostgreSQL the database is made, and dropped in the end. Its server compares in one process (no parallel workers).
+With ``--keep`` both stay, and a folder that holds an installation already is measured as it is.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import logging
 import os
 import statistics
@@ -88,14 +90,16 @@ def server_process() -> Callable[[], float]:
     return lambda: int(path.read_text().split()[0]) / 1e6
 
 
-def measure(addresses: dict[str, str], least: float) -> dict[str, Cost]:
-    """Request each address. Return what each of them costs."""
+def measure(addresses: dict[str, str], given: argparse.Namespace) -> dict[str, Cost]:
+    """Request each address that is asked for. Return what each of them costs."""
+    from django.conf import settings
     from django.db import connection, transaction
     from django.test import Client
 
     from annotations.models import User
     from tests.database_work import counted_work
 
+    settings.ALLOWED_HOSTS = ["testserver"]
     client, costs = Client(raise_request_exception=False), {}
     client.force_login(User.objects.get(username="adam"))
     used, taken = server_process(), []
@@ -122,12 +126,14 @@ def measure(addresses: dict[str, str], least: float) -> dict[str, Cost]:
         return answer.status_code, Cost(1000 * web, database, statements, work.done)
 
     for name, path in addresses.items():
+        if given.only not in name or name in given.without:
+            continue
         request(path)
         status, costs[name] = request(path)
         if status >= 500:
             print(f"{name} answers {status}", flush=True)
         for seconds, sql in taken:
-            if seconds >= least:
+            if seconds >= given.statements:
                 print(f"{name}: {seconds:.2f} s  {sql[:1500]}", flush=True)
     return costs
 
@@ -135,7 +141,10 @@ def measure(addresses: dict[str, str], least: float) -> dict[str, Cost]:
 def report(costs: dict[str, Cost], before: dict[str, Cost]) -> None:
     """Print the median and the worst of ``costs``, and what grew since ``before``."""
     each = sorted(cost.total for cost in costs.values())
-    print(f"{len(each)} pages, median {statistics.median(each):.0f} ms, ", end="")
+    print(
+        f"load {os.getloadavg()[0]:.1f}, {len(each)} pages, median {statistics.median(each):.0f} ms, ",
+        end="",
+    )
     print(f"95 % at most {each[int(0.95 * (len(each) - 1))]:.0f} ms, worst {each[-1]:.0f} ms")
     print("      web database statements rows read")
     for name, cost in sorted(costs.items(), key=lambda item: -item[1].total):
@@ -148,66 +157,90 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=[1_000, 100_000, 1_000_000])
     parser.add_argument("--only", default="", help="addresses whose name has this in it")
+    parser.add_argument("--without", nargs="*", default=[], help="names of addresses to leave out")
     parser.add_argument("--statements", type=float, default=60, help="seconds, of what is printed")
     parser.add_argument("--database", default="", help="an address of PostgreSQL; else SQLite")
-    parser.add_argument("--keep", action="store_true", help="do not delete the world in the end")
+    parser.add_argument("--keep", type=Path, help="folder of the installation, which is kept")
     given = parser.parse_args()
-    if given.database:
-        create_database(given.database)
-    with tempfile.TemporaryDirectory(prefix="pages-") as folder:
+    with tempfile.TemporaryDirectory(prefix="pages-") as temporary:
+        folder = given.keep or Path(temporary)
+        is_filled = (folder / "addresses.json").exists()
+        if given.database and not is_filled:
+            create_database(given.database)
+        folder.mkdir(parents=True, exist_ok=True)
         try:
-            site = Site(Path(folder), given.database)
+            site = Site(folder, given.database)
             site.run("createcachetable")
             site.run("collectstatic", "--no-input", "-v0")
             site.enter()
             logging.disable()
-            measure_all(given)
+            if is_filled:
+                addresses = json.loads((folder / "addresses.json").read_text())
+                report(measure(addresses, given), {})
+            else:
+                (folder / "addresses.json").write_text(json.dumps(fill_and_measure(given)))
+            if not given.keep:
+                measure_deletion()
         finally:
             if given.database and not given.keep:
                 drop_database(given.database)
 
 
-def measure_all(given: argparse.Namespace) -> None:
-    """Fill the world up to each size, and measure."""
+def fill_and_measure(given: argparse.Namespace) -> dict[str, str]:
+    """Fill the world up to each size, and measure. Return the addresses that are requested."""
     from django.db import transaction
-    from django.test.utils import setup_test_environment
 
-    from annotations.exchange.world_deletion import delete_world
     from tests.gpsr_site.routes.addresses import address
     from tests.gpsr_site.routes.test_queries import GET_ROUTES
     from tests.many_rows import ManyRows
 
-    setup_test_environment()
     with transaction.atomic():
         sample = make_world()
-    addresses = {name: address(name, sample) for name in GET_ROUTES if given.only in name}
+    addresses = {name: address(name, sample) for name in GET_ROUTES}
     many = ManyRows(sample.world)
     costs: dict[str, Cost] = {}
     for size in given.sizes:
         began = time.perf_counter()
         fill(many, size)
-        print(f"\n{size:,} rows of each kind, in {time.perf_counter() - began:.0f} s", end="")
-        print(f", load {os.getloadavg()[0]:.1f}", flush=True)
-        before, costs = costs, measure(addresses, given.statements)
+        print(f"\n{size:,} rows of each kind, in {time.perf_counter() - began:.0f} s", flush=True)
+        before, costs = costs, measure(addresses, given)
         report(costs, before)
-    if not given.keep:
-        used = server_process()
-        web, database = time.process_time(), used()
-        rows = delete_world(sample.world)
-        web, database = time.process_time() - web, (used() - database) / 1000
-        print(f"\nthe deletion of {rows:,} rows: {web:.0f} s, of the database {database:.0f} s")
+    return addresses
+
+
+def measure_deletion() -> None:
+    from annotations.exchange.world_deletion import delete_world
+    from annotations.models import World
+
+    used = server_process()
+    web, database = time.process_time(), used()
+    rows = delete_world(World.objects.get())
+    web, database = time.process_time() - web, (used() - database) / 1000
+    print(f"\nthe deletion of {rows:,} rows: {web:.0f} s, of the database {database:.0f} s")
 
 
 def fill(many: Any, size: int) -> None:
-    """Copy rows; on PostgreSQL without looking at each key that one has of another, since all fit."""
+    """Copy rows. On PostgreSQL without looking at each key that one has of another, since all fit, and with the
+    indexes made afterwards."""
     from django.db import connection, transaction
 
+    is_postgresql = connection.vendor == "postgresql"
     with transaction.atomic(), connection.cursor() as cursor:
-        if connection.vendor == "postgresql":
+        if is_postgresql:
             cursor.execute("SET LOCAL session_replication_role = replica")
+            cursor.execute(
+                "SELECT indexname, indexdef FROM pg_indexes "
+                "WHERE schemaname = 'public' AND indexdef NOT LIKE 'CREATE UNIQUE%'"
+            )
+            indexes = dict(cursor.fetchall())
+            for name in indexes:
+                cursor.execute(f'DROP INDEX "{name}"')
         many.multiply(size)
+        if is_postgresql:
+            for definition in indexes.values():
+                cursor.execute(definition)
     with connection.cursor() as cursor:  # what autovacuum does within minutes
-        cursor.execute("VACUUM ANALYZE" if connection.vendor == "postgresql" else "ANALYZE")
+        cursor.execute("VACUUM ANALYZE" if is_postgresql else "ANALYZE")
 
 
 if __name__ == "__main__":

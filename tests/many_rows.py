@@ -72,6 +72,7 @@ SPECIAL = {
     (Assignment, "outcome"): f"'{Outcome.DONE}'",
     (AuditFinding, "status"): f"'{FindingStatus.KEPT}'",
     (Job, "status"): f"'{Status.SUCCEEDED}'",
+    (Job, "finished_at"): "queued_at",
     (Comment, "subject"): "subject + k * 1000",  # nobody writes a million comments on one row
 }
 

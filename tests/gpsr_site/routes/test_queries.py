@@ -22,7 +22,39 @@ GET_ROUTES = sorted(
     {rule.name for rule in POLICY if rule.method == "get"}
     - {"admin:index", "download", "api:download", "api:schema", "logout"}
 )
-READ_ALL = {""}
+EXPORTS = {
+    *(
+        "api:campaign-triples",
+        "api:paraphrase-export",
+        "api:submission-export",
+        "api:utterance-export",
+    ),
+}
+# What searches the texts of a world for a word, or compares a split with all that the world has now.
+SEARCHES = {"api:split-changes", "entity", "split", "split_changes"}
+# What is counted of all rows for each page, and not kept.
+FIGURES = {
+    *("agreement", "api:audit", "api:campaign-list", "api:contributor-list", "api:progress"),
+    *(
+        "api:paraphrase-contributors",
+        "api:paraphrase-figures",
+        "api:paraphrase-forms",
+        "api:results",
+    ),
+    *(
+        "api:split-list",
+        "api:submission-list",
+        "api:uncovered",
+        "api:utterance-candidates",
+        "audit",
+    ),
+    *("campaign_edit", "campaign_new", "campaigns", "dialogues", "error_categories", "label"),
+    *("label_item", "logical_form", "offered_entities", "outside_grammar", "paraphrase"),
+    *("paraphrase_contributors", "paraphrase_figures", "paraphrase_forms", "paraphrase_runs"),
+    *("playground", "progress", "results", "results_download", "results_table", "run_new"),
+    *("splits", "submissions", "templates", "uncovered", "unmatched", "utterances_delete", "world"),
+}
+READ_ALL = EXPORTS | SEARCHES | FIGURES
 FEW = 300  # rows of each kind; a page of a list has 200 at most
 WRITES = ("INSERT", "UPDATE", "DELETE", "BEGIN", "SAVEPOINT")
 
