@@ -18,7 +18,7 @@ SEARCHED = {
 }
 WITHOUT = (
     "The extension pg_trgm cannot be made here, so searches will read all texts. Let an administrator of the database "
-    "run CREATE EXTENSION pg_trgm, and then: manage.py migrate annotations 0046, manage.py migrate\n"
+    "run CREATE EXTENSION pg_trgm, and then: manage.py migrate annotations 0047, manage.py migrate\n"
 )
 
 
@@ -54,5 +54,5 @@ def indexes(apps: Any) -> list[tuple[str, str, str]]:
 
 
 class Migration(migrations.Migration):
-    dependencies = [("annotations", "0046_lists_in_order")]
+    dependencies = [("annotations", "0047_lists_in_order")]
     operations = [migrations.RunPython(make, drop, elidable=False)]
