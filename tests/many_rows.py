@@ -70,6 +70,7 @@ SPECIAL = {
     (LogicalForm, "text"): "substr(text, 1, length(text) - 1) || '\" n' || k || ' \" )'",
     # Nobody holds a million items at once, no million jobs wait, and audits open few findings at once.
     (Assignment, "outcome"): f"'{Outcome.DONE}'",
+    (Assignment, "done_at"): "CURRENT_TIMESTAMP",
     (AuditFinding, "status"): f"'{FindingStatus.KEPT}'",
     (Job, "status"): f"'{Status.SUCCEEDED}'",
     (Job, "finished_at"): "queued_at",

@@ -390,6 +390,11 @@ class WorkItem(models.Model):
                 name="open_work_items",
             ),
             models.Index(fields=["world", "-id"], name="work_items_of_world"),
+            models.Index(
+                fields=["world", "-id"],
+                condition=models.Q(closed_at__isnull=False, people__gt=1),
+                name="double_work_items",
+            ),
         ]
 
     def __str__(self) -> str:

@@ -176,7 +176,7 @@ class Listing(FilteredList):
     @cached_property
     def total(self) -> int:
         """How many rows pass the filters, and one more than ``MOST_COUNTED`` where there are more than that."""
-        return self.matching.order_by()[: MOST_COUNTED + 1].count()
+        return count_some(self.matching)
 
     @cached_property
     def page(self) -> Page:
@@ -254,6 +254,11 @@ class NumberedPages(FilteredList):
     def previous_url(self) -> str:
         has_previous = self.page.has_previous()
         return self.url(page=str(self.page.previous_page_number())) if has_previous else ""
+
+
+def count_some(rows: QuerySet[Any]) -> int:
+    """Count rows, and read no further than one more than ``MOST_COUNTED``."""
+    return rows.order_by()[: MOST_COUNTED + 1].count()
 
 
 def say_total(total: int) -> str:

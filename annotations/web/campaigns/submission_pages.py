@@ -31,7 +31,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
-from annotations.showing.listing import MOST_COUNTED, Listing, Sort, render_list
+from annotations.showing.listing import Listing, Sort, count_some, render_list
 from annotations.showing.paging import number_in
 from annotations.web.campaigns.submission_filters import SubmissionFilters
 from annotations.web.editing.undo import say_with_undo
@@ -73,7 +73,7 @@ def submissions(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "listing": listing,
         "page_keys": KEYS_OF_LIST,
-        "n_waiting": submissions_of(world).awaiting_moderation()[: MOST_COUNTED + 1].count(),
+        "n_waiting": count_some(submissions_of(world).awaiting_moderation()),
     }
     return render_list(request, "annotations/campaigns/submissions.html", context)
 
