@@ -48,7 +48,7 @@ FIGURES = {
         "api:utterance-candidates",
         "audit",
     ),
-    *("campaign_edit", "campaign_new", "campaigns", "dialogues", "error_categories", "label"),
+    *("campaigns", "coverage", "error_categories", "label"),
     *("label_item", "logical_form", "offered_entities", "outside_grammar", "paraphrase"),
     *("paraphrase_contributors", "paraphrase_figures", "paraphrase_forms", "paraphrase_runs"),
     *("playground", "progress", "results", "results_download", "results_table", "run_new"),
