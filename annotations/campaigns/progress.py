@@ -12,6 +12,7 @@ from django.utils import timezone
 
 from annotations.models import Campaign, Submission
 from annotations.models.campaigns import ContributorKind, SubmissionKind, SubmissionStatus
+from annotations.rows.kept import kept
 
 RECENT = timedelta(hours=1)
 
@@ -46,9 +47,14 @@ class CampaignProgress:
         return None if self.left is None else self.left.total_seconds()
 
 
-def progress_of(campaign: Campaign, now: datetime | None = None) -> CampaignProgress:
+def progress_of(campaign: Campaign) -> CampaignProgress:
+    """Return how far a campaign is; of very many submissions, as of a while ago."""
+    key = "campaign", campaign.pk, campaign.version, campaign.closed_at
+    return kept(key, lambda: progress_at(campaign, timezone.now()), lambda now: now.rewrites)
+
+
+def progress_at(campaign: Campaign, now: datetime) -> CampaignProgress:
     """Count what was submitted. Accepted paraphrases of the world that came another way count for a form, too."""
-    now = now or timezone.now()
     forms = set(
         campaign.prompts.filter(check_words="").order_by().values_list("logical_form", flat=True)
     )

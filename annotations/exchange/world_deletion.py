@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
+from collections.abc import Iterator, Sequence
 from graphlib import TopologicalSorter
 from typing import Any
 
-from django.db import models
+from django.db import connection, models
 from django.utils import timezone
 
 from annotations.background.job_weight import MOST_ROWS
@@ -17,8 +18,8 @@ from annotations.models import Job, JobKind, User, World
 from annotations.rows.rows_in_words import rows_in_words
 from annotations.rows.synchronise import BATCH
 
-# Model → the paths by which its rows belong to a world.
-Paths = dict[type[models.Model], list[str]]
+# Model → the path by which its rows belong to a world.
+Paths = dict[type[models.Model], str]
 
 
 def start_deletion(world: World, by: User) -> Job | int:
@@ -30,7 +31,7 @@ def start_deletion(world: World, by: User) -> Job | int:
 
 
 def is_heavy_deletion(world: World) -> bool:
-    return sum(count_below(world).values()) > MOST_ROWS
+    return sum(count_below(world, MOST_ROWS + 1).values()) > MOST_ROWS
 
 
 def delete_world_of(job: Job, progress: JobProgress) -> dict[str, Any]:
@@ -45,7 +46,7 @@ def delete_world(world: World, progress: Progress = UNWATCHED) -> int:
     where the first one stopped.
     """
     request_deletion(world)
-    counts, paths = count_below(world), _paths_to_world()
+    counts, paths = count_below(world), paths_to_world()
     total, deleted = sum(counts.values()) or 1, 0
     for model in counts:
         for keys in _batches_of_keys(model, world, paths[model]):
@@ -64,40 +65,45 @@ def request_deletion(world: World) -> None:
     World.objects.filter(pk=world.pk).update(deletion_requested_at=timezone.now())
 
 
-def count_below(world: World) -> dict[type[models.Model], int]:
-    """Return how many rows each model has below ``world``, in an order in which they can be deleted.
+def count_below(world: World, most: int | None = None) -> dict[type[models.Model], int]:
+    """Return how many rows each model has below ``world``, at most ``most`` each, in an order in which they can be
+    deleted.
 
     Deleted utterances count: their rows are there. One query for all of them.
     """
-    paths = _paths_to_world()
-    order = _deletion_order(paths)
-    first, *others = (
-        model._base_manager.filter(
-            models.Q(*((path, world.pk) for path in paths[model]), _connector=models.Q.OR)
-        )
-        .order_by()
-        .annotate(model_number=models.Value(number))
-        .values("model_number")
-        .annotate(rows_below=models.Count("pk"))
-        .values_list("model_number", "rows_below")
-        for number, model in enumerate(order)
-    )
-    counts = dict(first.union(*others, all=True))
-    return {model: counts[number] for number, model in enumerate(order) if number in counts}
+    paths = paths_to_world()
+    order = deletion_order(paths)
+    parts: list[str] = []
+    values: list[Any] = []
+    for number, model in enumerate(order):
+        rows = model._base_manager.filter(**{paths[model]: world.pk}).order_by().values("pk")
+        sql, given = rows[:most].query.sql_with_params()
+        parts.append(f"SELECT {number}, COUNT(*) FROM ({sql}) AS below")
+        values += given
+    with connection.cursor() as cursor:
+        cursor.execute(" UNION ALL ".join(parts), values)
+        counts = dict(cursor.fetchall())
+    return {model: counts[number] for number, model in enumerate(order) if counts[number]}
 
 
-def _paths_to_world() -> Paths:
-    """Return every model whose rows go with a world, whichever application it is of."""
-    paths: Paths = {}
-    pending: list[tuple[type[models.Model], str]] = [(World, "")]
+def paths_to_world() -> Paths:
+    """Return every model whose rows go with a world, whichever application it is of.
+
+    Where rows belong to it by several paths, these lead to the same world; the shortest one is taken, of those that
+    every row has.
+    """
+    paths: dict[type[models.Model], list[tuple[bool, int, str]]] = {}
+    pending: list[tuple[type[models.Model], str, bool]] = [(World, "", False)]
     while pending:
-        parent, path = pending.pop()
+        parent, path, is_partial = pending.pop()
         for relation in _relations_to(parent):
-            child, name = relation.related_model, relation.field.name
+            child, field = relation.related_model, relation.field
             if relation.on_delete in (models.CASCADE, models.DO_NOTHING):
-                paths.setdefault(child, []).append(f"{name}__{path}" if path else name)
-                pending.append((child, paths[child][-1]))
-    return paths
+                found = f"{field.name}__{path}" if path else field.name
+                some_lack_it = is_partial or field.null
+                paths.setdefault(child, []).append((some_lack_it, found.count("__"), found))
+                pending.append((child, found, some_lack_it))
+    return {model: min(found)[-1] for model, found in paths.items()}
 
 
 def _relations_to(model: type[models.Model]) -> list[models.ForeignObjectRel]:
@@ -106,7 +112,7 @@ def _relations_to(model: type[models.Model]) -> list[models.ForeignObjectRel]:
     return [each for each in fields if isinstance(each, models.ForeignObjectRel)]
 
 
-def _deletion_order(paths: Paths) -> list[type[models.Model]]:
+def deletion_order(paths: Paths) -> list[type[models.Model]]:
     """Return the models in an order in which rows that refer to others come before these."""
     sorter: TopologicalSorter[type[models.Model]] = TopologicalSorter()
     for model in paths:
@@ -115,11 +121,11 @@ def _deletion_order(paths: Paths) -> list[type[models.Model]]:
     return list(sorter.static_order())
 
 
-def _batches_of_keys(
-    model: type[models.Model], world: World, paths: list[str]
-) -> Iterator[list[int]]:
-    """Yield keys of rows that still exist; the caller deletes each batch before it asks for the next."""
-    for path in paths:
-        rows = model._base_manager.filter(**{path: world.pk}).order_by()
-        while keys := list(rows.values_list("pk", flat=True)[:BATCH]):
-            yield keys
+def _batches_of_keys(model: type[models.Model], world: World, path: str) -> Iterator[Sequence[int]]:
+    """Yield keys of rows that still exist; the caller deletes each batch before it asks for the next.
+
+    All keys are read at once, eight bytes each: asking anew for the first ones would pass over all that were deleted.
+    """
+    rows = model._base_manager.filter(**{path: world.pk}).order_by().values_list("pk", flat=True)
+    while keys := array("q", rows.iterator()):
+        yield from (keys[start : start + BATCH] for start in range(0, len(keys), BATCH))

@@ -8,6 +8,7 @@ from typing import Any
 from django.db.models import Count, Sum
 
 from annotations.models import Command, LogicalForm, SemanticTemplate, TaskCategory, World
+from annotations.rows.kept import kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,12 @@ def complexity(world: World) -> list[Complexity]:
     ]
     sums = {key: sum(asdict(column)[key] for column in columns) for key in SUMMED}
     return [*columns, Complexity("", **sums)]
+
+
+def kept_complexity(world: World) -> list[Complexity]:
+    """Return the same; of very many commands, as it was a while ago."""
+    key = "complexity", world.pk, world.revision, world.generations
+    return kept(key, lambda: complexity(world), lambda columns: columns[-1].commands)
 
 
 def _sums(rows: Any) -> dict[str, tuple[int, int]]:

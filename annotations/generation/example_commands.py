@@ -10,6 +10,7 @@ from django.db.models.functions import RowNumber
 
 from annotations.language.forms import CLASS_TOKEN, UNKNOWN, to_corpus
 from annotations.models import Command, Entity, LogicalForm, World
+from annotations.rows.kept import kept
 
 _DIGITS = "0123456789"
 
@@ -20,6 +21,24 @@ def example_commands(world: World, how_many: int) -> list[str]:
     The same on every call. A command with a class of which the world has no entity is left out, and so is one that says
     less than a robot needs, as "follow someone" does.
     """
+    shortest = kept(
+        ("shortest forms", world.pk, world.revision, world.generations, how_many),
+        lambda: _shortest_forms(world, 2 * how_many),
+        lambda forms: sum(count for _, count in forms),
+    )
+    keys = [key for key, _ in shortest]
+    of_form = Window(RowNumber(), partition_by=F("logical_form"), order_by=("length", "pk"))
+    rows = Command.objects.filter(logical_form__in=keys).annotate(place=of_form).filter(place=1)
+    texts = {each.logical_form_id: each.anonymized_text for each in rows}
+    ordered = [texts[key] for key in keys if key in texts]
+    entities = _two_of_each_class(world, {each for text in ordered for each in _classes_in(text)})
+    known = (text for text in ordered if all(each in entities for each in _classes_in(text)))
+    return [_name_entities(text, entities) for text in known][:how_many]
+
+
+def _shortest_forms(world: World, how_many: int) -> list[tuple[int, int]]:
+    """Return the key of the shortest form of each action with a command, and how many such forms there are; the
+    commonest actions first."""
     has_command = Exists(Command.objects.filter(logical_form=OuterRef("pk")))
     forms = LogicalForm.objects.filter(has_command, world=world)
     forms = forms.exclude(text__contains=to_corpus(UNKNOWN))
@@ -32,14 +51,7 @@ def example_commands(world: World, how_many: int) -> list[str]:
         .filter(place=1)
         .order_by("-count", "head_predicate")
     )
-    keys = [each.pk for each in shortest_forms[: 2 * how_many]]
-    of_form = Window(RowNumber(), partition_by=F("logical_form"), order_by=("length", "pk"))
-    shortest = Command.objects.filter(logical_form__in=keys).annotate(place=of_form).filter(place=1)
-    texts = {each.logical_form_id: each.anonymized_text for each in shortest}
-    ordered = [texts[key] for key in keys]
-    entities = _two_of_each_class(world, {each for text in ordered for each in _classes_in(text)})
-    known = (text for text in ordered if all(each in entities for each in _classes_in(text)))
-    return [_name_entities(text, entities) for text in known][:how_many]
+    return [(each.pk, each.count) for each in shortest_forms[:how_many]]
 
 
 def _classes_in(text: str) -> list[str]:

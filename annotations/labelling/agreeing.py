@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 
-from django.db.models import Count, Q
+from django.db.models import Q
 
 from annotations.language.corpus import Agreement, Distances, measure
 from annotations.language.forms import (
@@ -18,6 +18,7 @@ from annotations.language.forms import (
 )
 from annotations.models import Assignment, WorkItem, World
 from annotations.models.corpus import Verdict
+from annotations.models.counting import count_of
 
 MOST_ITEMS = 1000  # the newest, so that the page answers at once
 MOST_FORMS = 100  # distinct ones between which distances are computed
@@ -61,7 +62,7 @@ class Disagreement:
 
 def double_labels(world: World) -> list[DoubleLabel]:
     """Return the newest items that two people have labelled, at most ``MOST_ITEMS``."""
-    done = Count("assignments", Q(assignments__label__isnull=False))
+    done = count_of(Assignment.objects.filter(label__isnull=False), "item")
     items = WorkItem.objects.filter(world=world, people__gt=1, closed_at__isnull=False)
     is_settled = Q(followed_by=None) | ~Q(followed_by__closed_at=None)
     annotated = items.annotate(done=done, is_settled=Q(is_settled))  # type: ignore[no-redef]  # declared for readers

@@ -10,6 +10,7 @@ from django.utils import timezone
 
 from annotations.models import Assignment, Label, User, Utterance, UtteranceStatus, World
 from annotations.models.corpus import UtteranceQuerySet
+from annotations.rows.kept import kept
 
 LAST_SHOWN = 5
 
@@ -44,15 +45,23 @@ def next_utterance(
 
 
 def progress_of(world: World, user: User) -> LabellingProgress:
-    """Count the utterances of ``world`` and what ``user`` has answered since midnight."""
+    """Count the utterances of ``world`` (of very many, as of a while ago), and what ``user`` answered today."""
     midnight = timezone.localtime().replace(hour=0, minute=0, second=0, microsecond=0)
     today = Label.objects.of_world(world).valid().filter(annotator=user, created_at__gte=midnight)
+    total, waiting = kept(
+        ("labelled", world.pk), lambda: _count_utterances(world), lambda counted: sum(counted)
+    )
     return LabellingProgress(
-        total=world.utterances.exclude(status=UtteranceStatus.EXCLUDED).count(),
-        waiting=world.utterances.unlabelled().count(),
+        total=total,
+        waiting=waiting,
         today=today.count(),
         seconds=today.aggregate(mean=Avg("seconds"))["mean"],
     )
+
+
+def _count_utterances(world: World) -> tuple[int, int]:
+    rows = world.utterances.exclude(status=UtteranceStatus.EXCLUDED)
+    return rows.count(), world.utterances.unlabelled().count()
 
 
 def last_labels(world: World, user: User) -> QuerySet[Label]:

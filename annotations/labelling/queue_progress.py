@@ -11,6 +11,7 @@ from django.db.models.functions import TruncDate
 from django.utils import timezone
 
 from annotations.models import Assignment, WorkKind, World
+from annotations.rows.kept import kept
 
 DAYS = 30
 
@@ -44,7 +45,11 @@ class QueueProgress:
 
 
 def progress_of(world: World) -> QueueProgress:
-    """Count the items that people have done, by person and day."""
+    """Count the items that people have done, by person and day; of very many, those of a while ago."""
+    return kept(("done", world.pk), lambda: _count_done(world), lambda done: done.total)
+
+
+def _count_done(world: World) -> QueueProgress:
     today = timezone.localdate()
     since = timezone.now() - timedelta(days=DAYS)
     rows = (
@@ -70,8 +75,17 @@ def progress_of(world: World) -> QueueProgress:
 
 
 def open_by_kind(world: World) -> list[tuple[str, str, int, int]]:
-    """Return kind, label, open items and those of them that are free; kinds without any are left out."""
+    """Return kind, label, open items and those of them that are free; kinds without any are left out.
+
+    Of very many, those of a while ago.
+    """
+    counts = kept(
+        ("open", world.pk), lambda: _count_open(world), lambda given: sum(map(sum, given.values()))
+    )
+    return [(kind, kind.label, *counts[kind]) for kind in WorkKind if kind in counts]
+
+
+def _count_open(world: World) -> dict[str, tuple[int, int]]:
     rows = world.work_items.open().order_by().values_list("kind")
     counted = rows.annotate(items=Count("pk"), free=Count("pk", Q(places__gt=0)))
-    counts = {kind: (items, free) for kind, items, free in counted}
-    return [(kind, kind.label, *counts[kind]) for kind in WorkKind if kind in counts]
+    return {kind: (items, free) for kind, items, free in counted}

@@ -8,6 +8,7 @@ from datetime import timedelta
 from http import HTTPStatus
 
 from django.db import transaction
+from django.db.models import Exists, OuterRef
 from django.utils import timezone
 
 from annotations.exchange.source_files import UploadedFile, read_one_file
@@ -211,8 +212,10 @@ def store(world: World, shown: Preview, upload: Upload, by: User) -> CollectedTe
 
 def count_labelled(upload: Upload) -> int:
     """Return how many utterances of an upload somebody has answered since, and not taken back."""
-    answers = Label.objects.valid().filter(created_at__gt=upload.stored_at)
-    return upload.utterances.filter(pk__in=answers.values("utterance")).count()
+    answers = Label.objects.valid().filter(
+        created_at__gt=upload.stored_at, utterance=OuterRef("pk")
+    )
+    return upload.utterances.filter(Exists(answers)).count()
 
 
 def undo(upload: Upload, by: User, with_labelled: bool) -> int:
@@ -231,7 +234,7 @@ def undo(upload: Upload, by: User, with_labelled: bool) -> int:
         rows = stored.utterances.all()
         if not with_labelled:
             answers = Label.objects.valid().filter(created_at__gt=stored.stored_at)
-            rows = rows.exclude(pk__in=answers.values("utterance"))
+            rows = rows.exclude(Exists(answers.filter(utterance=OuterRef("pk"))))
         stored.undone_at, stored.undone_by = timezone.now(), by
         stored.save(update_fields=["undone_at", "undone_by"])
         return delete_utterances(list(rows.values_list("pk", flat=True)), by, stored.undone_at)

@@ -33,6 +33,7 @@ class Status(models.TextChoices):
     LOST = "lost"
 
 
+ACTIVE = (Status.QUEUED, Status.RUNNING)
 ENDED = (Status.SUCCEEDED, Status.FAILED, Status.CANCELLED, Status.LOST)
 
 
@@ -69,7 +70,7 @@ class WorkQuerySet(models.QuerySet[Work]):
 
     def active(self) -> Self:
         """Return what is queued or running."""
-        return self.exclude(status__in=ENDED)
+        return self.filter(status__in=ACTIVE)
 
     def expired(self) -> Self:
         """Return the running rows whose worker has not extended its lease, by the database's clock.
@@ -196,7 +197,7 @@ class JobQuerySet(WorkQuerySet["Job"]):
     def needing_attention(self) -> JobQuerySet:
         """Return the jobs that wait for an answer, and those that wait or run."""
         is_asking = models.Q(status=Status.SUCCEEDED, report__is_waiting=True)
-        return self.filter(is_asking | ~models.Q(status__in=ENDED))
+        return self.filter(is_asking | models.Q(status__in=ACTIVE))
 
 
 class Job(BackgroundWork):
@@ -224,6 +225,7 @@ class Job(BackgroundWork):
         indexes = [
             models.Index(fields=["status", "queue", "queued_at"]),
             models.Index(fields=["world", "-id"]),
+            models.Index(fields=["world", "kind", "-id"], name="jobs_of_kind"),
         ]
 
     @property

@@ -10,9 +10,10 @@ import secrets
 from datetime import datetime, timedelta
 
 from django.db import models
-from django.db.models import Count, Q
+from django.db.models import Count
 from django.utils import timezone
 
+from annotations.models.counting import count_of
 from annotations.models.people import User
 from annotations.models.worlds import World
 
@@ -96,13 +97,12 @@ class CampaignQuerySet(models.QuerySet["Campaign"]):
 
     def counted(self) -> CampaignQuerySet:
         """Return each with ``people`` who have begun, ``finished`` ones, and their ``answers``."""
-        is_answered = ~Q(contributors__submissions__text="")
-        is_person = Q(contributors__kind=ContributorKind.PERSON)
-        has_finished = is_person & Q(contributors__finished_at__isnull=False)
+        people = Contributor.objects.filter(kind=ContributorKind.PERSON)
+        answered = Submission.objects.answered()
         return self.annotate(
-            people=Count("contributors__pseudonym", distinct=True, filter=is_person),
-            finished=Count("contributors", distinct=True, filter=has_finished),
-            answers=Count("contributors__submissions", distinct=True, filter=is_answered),
+            people=count_of(people, "campaign", Count("pseudonym", distinct=True)),
+            finished=count_of(people.filter(finished_at__isnull=False), "campaign"),
+            answers=count_of(answered, "contributor__campaign"),
         )
 
 
@@ -256,10 +256,10 @@ class CampaignPrompt(models.Model):
 class ContributorQuerySet(models.QuerySet["Contributor"]):
     def counted(self) -> ContributorQuerySet:
         """Return each with the number of their ``answers``, and of those that are ``flagged``."""
-        is_answered = ~Q(submissions__text="")
+        answered = Submission.objects.answered()
         return self.annotate(
-            answers=Count("submissions", filter=is_answered),
-            flagged=Count("submissions", filter=is_answered & ~Q(submissions__flags=[])),
+            answers=count_of(answered, "contributor"),
+            flagged=count_of(answered.exclude(flags=[]), "contributor"),
         )
 
 
@@ -296,7 +296,10 @@ class Contributor(models.Model):
                 fields=["campaign", "pseudonym", "attempt"], name="contributor_once"
             )
         ]
-        indexes = [models.Index(fields=["campaign", "began_at"])]
+        indexes = [
+            models.Index(fields=["campaign", "began_at"]),
+            models.Index(fields=["campaign", "kind"], name="contributors_of_kind"),
+        ]
 
     def __str__(self) -> str:
         return self.pseudonym

@@ -53,7 +53,10 @@ class Command(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["world", "anonymized_text"], name="command_text")
         ]
-        indexes = [models.Index(fields=["world", "task_category", "position"])]
+        indexes = [
+            models.Index(fields=["world", "task_category", "position"]),
+            models.Index(fields=["world", "position", "id"], name="commands_in_order"),
+        ]
 
     def __str__(self) -> str:
         return self.anonymized_text
@@ -118,6 +121,9 @@ class Paraphrase(Editable):
         ordering = ["position"]
         constraints = [
             models.UniqueConstraint(fields=["world", "position"], name="paraphrase_position")
+        ]
+        indexes = [
+            models.Index(fields=["world", "logical_form", "position"], name="paraphrases_of_form"),
         ]
 
     def __str__(self) -> str:

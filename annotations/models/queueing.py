@@ -138,7 +138,10 @@ class AuditFinding(models.Model):
             )
             for name in ("paraphrase", "utterance")
         ]
-        indexes = [models.Index(fields=["world", "status", "rank"])]
+        indexes = [
+            models.Index(fields=["world", "status", "rank"]),
+            models.Index(fields=["world", "rank", "id"], name="findings_in_order"),
+        ]
 
     def __str__(self) -> str:
         return self.text
@@ -316,9 +319,9 @@ class WorkItemQuerySet(models.QuerySet["WorkItem"]):
 
     def skipped_by(self, person: User) -> WorkItemQuerySet:
         """Return the free items that ``person`` has skipped: others are asked, and they may have them once more."""
-        theirs = Assignment.objects.skipped().filter(person=person)
+        theirs = Assignment.objects.skipped().filter(person=person)  # few, beside all that is free
         rows = self.present().free().not_answered_by(person)
-        return rows.filter(models.Exists(theirs.filter(item=models.OuterRef("pk"))))
+        return rows.filter(pk__in=theirs.values("item"))
 
     def returned_by(self, person: User) -> WorkItemQuerySet:
         """Return the free items that ``person`` gave back or kept too long, and may have once more."""
@@ -381,7 +384,17 @@ class WorkItem(models.Model):
                 condition=models.Q(closed_at__isnull=True, places__gt=0),
                 name="free_work_items",
             ),
+            models.Index(
+                fields=["world", "priority", "id"],
+                condition=models.Q(closed_at__isnull=True),
+                name="open_work_items",
+            ),
             models.Index(fields=["world", "-id"], name="work_items_of_world"),
+            models.Index(
+                fields=["world", "-id"],
+                condition=models.Q(closed_at__isnull=False, people__gt=1),
+                name="double_work_items",
+            ),
         ]
 
     def __str__(self) -> str:

@@ -7,9 +7,9 @@ from typing import Any
 
 import django_filters
 from django import forms
-from django.db.models import Q, QuerySet
+from django.db.models import Exists, OuterRef, Q, QuerySet
 
-from annotations.models import Command, Predicate
+from annotations.models import Command, Predicate, TaskCategory, World
 from annotations.people.access import WorldRequest
 from annotations.showing.paging import LARGEST_INTEGER
 
@@ -101,7 +101,11 @@ def predicate_choices(request: WorldRequest) -> Choices:
 
 
 def task_category_choices(request: WorldRequest) -> Choices:
-    """Return the task categories that the world's commands are counted in."""
-    rows = Command.objects.filter(world=request.world).order_by("task_category")
-    names = rows.values_list("task_category", flat=True).distinct()
-    return [(name, name) for name in names if name]
+    """Return the task categories of the world that the page is about."""
+    return task_categories_with_commands(request.world)
+
+
+def task_categories_with_commands(world: World) -> Choices:
+    commands = Command.objects.filter(world=world, task_category=OuterRef("name"))
+    rows = TaskCategory.objects.filter(Exists(commands), grammar__world=world)
+    return [(name, name) for name in rows.order_by("name").values_list("name", flat=True)]

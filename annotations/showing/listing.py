@@ -19,6 +19,9 @@ from annotations.people.access import PageRequest
 from annotations.showing.paging import PAGE_SIZE, Page, opposite, page_of
 
 PLACE = ("after", "before", "page", "finding")
+MOST_COUNTED = (
+    10_000  # rows of a stored list; a page says that there are more, and reads no further
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +175,8 @@ class Listing(FilteredList):
 
     @cached_property
     def total(self) -> int:
-        return self.matching.count()
+        """How many rows pass the filters, and one more than ``MOST_COUNTED`` where there are more than that."""
+        return count_some(self.matching)
 
     @cached_property
     def page(self) -> Page:
@@ -187,7 +191,7 @@ class Listing(FilteredList):
     def summary(self) -> str:
         """How many rows are shown and how many there are, such as ``50 of 1,211``."""
         shown, total = len(self.rows), self.total
-        return f"{total:,}" if shown == total else f"{shown:,} of {total:,}"
+        return f"{total:,}" if shown == total else f"{shown:,} of {say_total(total)}"
 
     @property
     def next_url(self) -> str:
@@ -250,6 +254,16 @@ class NumberedPages(FilteredList):
     def previous_url(self) -> str:
         has_previous = self.page.has_previous()
         return self.url(page=str(self.page.previous_page_number())) if has_previous else ""
+
+
+def count_some(rows: QuerySet[Any]) -> int:
+    """Count rows, and read no further than one more than ``MOST_COUNTED``."""
+    return rows.order_by()[: MOST_COUNTED + 1].count()
+
+
+def say_total(total: int) -> str:
+    """Return the ``total`` of a list in words: ``1,211`` or ``over 10,000``."""
+    return f"{total:,}" if total <= MOST_COUNTED else f"over {MOST_COUNTED:,}"
 
 
 def render_list(request: PageRequest, template: str, context: dict[str, Any]) -> HttpResponse:

@@ -93,7 +93,10 @@ class OfferedEntity(models.Model):
                 fields=["world", "entity_class", "text", "alias"], name="one_offer_of_each_entity"
             )
         ]
-        indexes = [models.Index(fields=["world", "state", "-id"])]
+        indexes = [
+            models.Index(fields=["world", "state", "-id"]),
+            models.Index(fields=["world", "-decided_at"], name="offers_by_decision"),
+        ]
 
     def __str__(self) -> str:
         return f"{self.alias} (= {self.text})" if self.alias else self.text

@@ -23,7 +23,12 @@ from annotations.models.campaigns import (
     wording_choices,
 )
 from annotations.people.access import WorldRequest
-from annotations.showing.filtering import Choices, PageFilters, Search
+from annotations.showing.filtering import (
+    Choices,
+    PageFilters,
+    Search,
+    task_categories_with_commands,
+)
 from annotations.web.forms import choice_field
 
 MOST_PROMPTS_PER_FORM = 20
@@ -195,10 +200,7 @@ class CampaignForm(forms.Form):
 
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
-        names = world.commands.order_by("task_category").values_list("task_category", flat=True)
-        choice_field(self, "task_categories").choices = [
-            (name, name) for name in names.distinct() if name
-        ]
+        choice_field(self, "task_categories").choices = task_categories_with_commands(world)
 
     def clean_ends_at(self) -> datetime | None:
         """Return the end of the last day, which must lie ahead. The time zone is that of the person; over REST it

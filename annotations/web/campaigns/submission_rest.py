@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.db.models import QuerySet
+from django.db.models import Exists, OuterRef, QuerySet
 from django.http import StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
@@ -24,7 +24,7 @@ from annotations.campaigns.moderation import (
 )
 from annotations.exchange.split_export import SplitFormat
 from annotations.language.texts import MAX_FORM
-from annotations.models import Duty, Scope, Submission
+from annotations.models import Contributor, Duty, Scope, Submission
 from annotations.models.campaigns import SubmissionKind
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
@@ -120,7 +120,8 @@ class SubmissionViewSet(RowsViewSet):
     sorts = {"id": "pk", "newest": "-pk"}
 
     def rows(self) -> QuerySet[Submission]:
-        rows = Submission.objects.filter(contributor__campaign__world=self.world).answered()
+        theirs = Contributor.objects.filter(pk=OuterRef("contributor"), campaign__world=self.world)
+        rows = Submission.objects.filter(Exists(theirs)).answered()
         related = ("contributor__campaign", "prompt")
         return rows.exclude(kind=SubmissionKind.CHECK).select_related(*related)
 

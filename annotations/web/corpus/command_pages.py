@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from django.db.models import Count
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, render
 
-from annotations.generation.complexity import complexity as complexity_of
-from annotations.models import Duty, LogicalForm, Paraphrase, World
+from annotations.generation.complexity import kept_complexity
+from annotations.models import Command, Duty, LogicalForm, Paraphrase, World
+from annotations.models.counting import count_of
 from annotations.models.description import ProblemSubject
 from annotations.people.access import WorldRequest, world_view
 from annotations.rows.occurrences import MOST_SHOWN
@@ -57,13 +57,17 @@ def command(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 @world_view(Duty.VIEW)
 def complexity(request: WorldRequest, world: World) -> HttpResponse:
     """Show counts, mean lengths and commands per form, by task category."""
-    return render(request, "annotations/corpus/complexity.html", {"columns": complexity_of(world)})
+    return render(
+        request, "annotations/corpus/complexity.html", {"columns": kept_complexity(world)}
+    )
 
 
 @world_view(Duty.VIEW)
 def logical_forms(request: WorldRequest, world: World) -> HttpResponse:
     """List every logical form with the number of its commands."""
-    rows = LogicalForm.objects.filter(world=world).annotate(n_commands=Count("commands"))
+    rows = LogicalForm.objects.filter(world=world).annotate(
+        n_commands=count_of(Command.objects.all(), "logical_form")
+    )
     context = {"listing": Listing(request, LogicalFormFilters, rows, FORM_SORTS)}
     return render_list(request, "annotations/corpus/logical_forms.html", context)
 

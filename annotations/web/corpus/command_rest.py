@@ -9,7 +9,7 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 
-from annotations.generation.complexity import complexity
+from annotations.generation.complexity import kept_complexity
 from annotations.models import Command, LogicalForm
 from annotations.web.corpus.corpus_filters import CommandFilters, LogicalFormFilters
 from annotations.web.rest.permissions import ApiRequest
@@ -86,4 +86,4 @@ class ComplexityOfWorld(Figures):
 
     @extend_schema(operation_id="complexity", responses={200: ComplexityTable})
     def get(self, request: ApiRequest, **kwargs: object) -> Response:
-        return Response(ComplexityTable({"results": complexity(self.world)}).data)
+        return Response(ComplexityTable({"results": kept_complexity(self.world)}).data)

@@ -6,6 +6,7 @@ from typing import Any
 
 from django import forms
 from django.contrib import messages
+from django.db.models import Exists, OuterRef
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
@@ -22,7 +23,7 @@ from annotations.labelling.utterance_uploads import (
     store,
 )
 from annotations.language.texts import LanguageError, normalise_line, say_count
-from annotations.models import Duty, Upload, Utterance, World
+from annotations.models import Duty, Label, Upload, Utterance, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.showing.listing import Listing, Sort, render_list
@@ -165,7 +166,7 @@ def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
     rows = Listing(request, UtteranceFilters, world.utterances.all(), SORTS).matching
     if keys:
         rows = rows.filter(pk__in=keys[:MOST_DELETED])
-    total = rows.count()
+    total = rows[: MOST_DELETED + 1].count()
     is_too_many = total > MOST_DELETED
     if request.method == "POST" and request.POST.get("total") != str(total):
         messages.warning(request, "The list has changed since you opened it. Look at it again.")
@@ -177,12 +178,11 @@ def utterances_delete(request: WorldRequest, world: World) -> HttpResponse:
             request, f"{say_count(n_deleted, 'utterance')} deleted.", undo, at=at.isoformat()
         )
         return redirect("utterances", world=world.name)
+    answers = Label.objects.valid().filter(utterance=OuterRef("pk"))
     context = {
         "rows": rows[:SHOWN],
         "total": total,
-        "n_labelled": rows.filter(labels__taken_back_at__isnull=True, labels__isnull=False)
-        .distinct()
-        .count(),
+        "n_labelled": 0 if is_too_many else rows.filter(Exists(answers)).count(),
         "most": MOST_DELETED,
         "is_too_many": is_too_many,
     }

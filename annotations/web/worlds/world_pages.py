@@ -28,6 +28,7 @@ from annotations.people.access import (
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.people.audit_log import note
 from annotations.rows.rows_in_words import rows_in_words
+from annotations.showing.listing import MOST_COUNTED
 from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
@@ -144,7 +145,7 @@ def world_delete(request: WorldRequest, world: World) -> HttpResponse:
             return redirect("job", pk=started.pk)
         messages.success(request, f"Deleted {name} with {started:,} rows.")
         return redirect("home")
-    below = count_below(world).items()
+    below = count_below(world, MOST_COUNTED + 1).items()
     counts = [(rows_in_words(model), count) for model, count in below if count]
     context = {"form": form, "counts": sorted(counts, key=lambda each: -each[1])}
     return render(request, "annotations/worlds/world_delete.html", context)

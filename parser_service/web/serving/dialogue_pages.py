@@ -16,6 +16,7 @@ from annotations.models import Duty, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.audit_log import note
+from annotations.showing.listing import count_some
 from parser_service.models import Dialogue, OfferedEntity, OfferState
 from parser_service.serving.conversation import AnsweredMeanwhile, keep, reply, start, state_of
 from parser_service.serving.dialogue_json import asked_of, plan_of, task_plan_in
@@ -25,7 +26,7 @@ from parser_service.serving.preparing import WorldLanguage
 MOST_LISTED = 30
 YES_OR_NO = (Phase.CHECKING, Phase.LEARNING, Phase.CONFIRMING)
 
-MOST_DECIDED = 20
+MOST_WAITING, MOST_DECIDED = 200, 20
 
 
 @world_view(Duty.VIEW, READ_AND_WRITE, does="begin a dialogue")
@@ -43,7 +44,7 @@ def dialogues(request: WorldRequest, world: World) -> HttpResponse:
     rows = Dialogue.objects.filter(world=world).select_related("started_by")
     context |= {
         "rows": rows[:MOST_LISTED],
-        "offered": world.offered_entities.filter(state="waiting").count(),
+        "offered": count_some(world.offered_entities.filter(state=OfferState.WAITING)),
     }
     status = 422 if "trouble" in context else 200
     return render(request, "parser_service/serving/dialogues.html", context, status=status)
@@ -108,10 +109,10 @@ def dialogue_keep(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 def offered_entities(request: WorldRequest, world: World) -> HttpResponse:
     """Show what waits for an annotator, and what was decided last."""
     rows = OfferedEntity.objects.filter(world=world).select_related("decided_by")
-    decided = rows.exclude(state=OfferState.WAITING).order_by("-decided_at")
+    decided = rows.exclude(state=OfferState.WAITING).filter(decided_at__isnull=False)
     context = {
-        "waiting": rows.filter(state=OfferState.WAITING).order_by("pk"),
-        "decided": decided[:MOST_DECIDED],
+        "waiting": rows.filter(state=OfferState.WAITING).order_by("pk")[:MOST_WAITING],
+        "decided": decided.order_by("-decided_at")[:MOST_DECIDED],
     }
     return render(request, "parser_service/serving/offered_entities.html", context)
 

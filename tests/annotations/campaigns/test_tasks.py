@@ -12,7 +12,7 @@ from django.utils import timezone
 from annotations.campaigns.answering import finish, save_answer, warnings_for
 from annotations.campaigns.closing import close, reopen
 from annotations.campaigns.limits import TooOften
-from annotations.campaigns.progress import progress_of
+from annotations.campaigns.progress import progress_at, progress_of
 from annotations.campaigns.pseudonyms import market_id_in, pseudonym_of
 from annotations.campaigns.tasks import CampaignOver, begin, choose_prompts
 from annotations.language.corpus import RewriteFault
@@ -230,7 +230,7 @@ def test_progress_counts_forms_pace_and_cost(launched):
     assert after.per_hour > 0
     assert after.left
     assert str(after.cost) == "1.50"
-    later = progress_of(campaign, timezone.now() + timedelta(hours=3))
+    later = progress_at(campaign, timezone.now() + timedelta(hours=3))
     assert (later.per_hour, later.left) == (0, None)
 
 

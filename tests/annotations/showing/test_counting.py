@@ -15,6 +15,8 @@ from annotations.templatetags.counting import of_rows
         (1, "entities", "1 entity"),
         (1, "logical forms", "1 logical form"),
         (1211, "commands", "1,211 commands"),
+        (10_000, "commands", "10,000 commands"),
+        (10_001, "commands", "over 10,000 commands"),
     ],
 )
 def test_one_row_is_counted_in_the_singular(total, plural, words):
