@@ -30,11 +30,22 @@ class Supervisor:
 
     A child that ends is started again; ``SIGINT`` or ``SIGTERM`` ends them all. Where this
     process is killed, Linux ends them.
+
+    Args:
+        later: the commands of children that are not started before ``is_time``.
     """
 
-    def __init__(self, commands: Mapping[str, Sequence[str]], say: Callable[[str], object]) -> None:
-        self.commands = dict(commands)
+    def __init__(
+        self,
+        commands: Mapping[str, Sequence[str]],
+        say: Callable[[str], object],
+        later: Mapping[str, Sequence[str]] | None = None,
+        is_time: Callable[[], bool] = lambda: True,
+    ) -> None:
+        self.commands = {**commands, **(later or {})}
         self.say = say
+        self.later = list(later or {})
+        self.is_time = is_time
         self.children: dict[str, subprocess.Popen[bytes]] = {}
         self.started_at: dict[str, float] = {}
         self.restart_at: dict[str, float] = {}
@@ -44,11 +55,14 @@ class Supervisor:
         for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(signal_number, self._ask_to_stop)
         for name in self.commands:
-            self._start_child(name)
+            if name not in self.later:
+                self._start_child(name)
 
     def watch(self) -> None:
         """Keep the children running until a signal comes, then stop them."""
         while not self.is_stopping:
+            while self.later and self.is_time():
+                self._start_child(self.later.pop(0))
             self._restart_the_ended()
             time.sleep(0.2)
         self.stop()

@@ -37,10 +37,13 @@ from parser_service.parsers.interface import (
     Parser,
     keep_going,
 )
+from parser_service.parsers.remembering import remembered
 from parser_service.parsers.storage import open_sealed, read_json, seal, write_json
 
 GRAMMAR_FORM = "grammar"  # the origin of all its forms
 GRAMMAR, ONTOLOGY = "grammar.json", "ontology.json"
+# One that is no command is looked at again at once, to find its commands.
+REMEMBERED_UTTERANCES = 32
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,14 @@ class GrammarOracle(Parser):
         return answers
 
     def _candidates(self, utterance: str) -> list[Candidate]:
+        return self._look_up(utterance)[0]
+
+    @remembered(REMEMBERED_UTTERANCES)
+    def _look_up(self, utterance: str) -> tuple[list[Candidate], list[HeardLattice]]:
+        """Return the candidates for an utterance and the lattices that were looked at: all where there is none."""
+        looked_at: list[HeardLattice] = []
         for heard in self.reader.lattices(utterance):
+            looked_at.append(heard)
             found: dict[tuple[str, tuple[str | None, ...]], Candidate] = {}
             for each in self._parse(heard):
                 values = heard.values(each.arcs)
@@ -120,8 +130,8 @@ class GrammarOracle(Parser):
                         heard=heard.heard(each.path),
                     )
             if found:
-                return list(found.values())
-        return []
+                return list(found.values()), looked_at
+        return [], looked_at
 
     def understands(self, utterance: str) -> bool:
         """Return whether an utterance is one command."""
@@ -132,7 +142,8 @@ class GrammarOracle(Parser):
 
         A few are none: see ``TemplateChart.spans``.
         """
-        for heard in self.reader.lattices(utterance):
+        candidates, lattices = self._look_up(utterance)
+        for heard in self.reader.lattices(utterance) if candidates else lattices:
             if heard.tokens:
                 spans = self._chart.spans(heard.lattice, Budget(CHECK_STEPS))
                 yield Islands(

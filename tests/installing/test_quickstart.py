@@ -125,7 +125,7 @@ def test_it_serves_trains_and_stops_twice_over(installation):
 def test_what_it_started_ends_with_it_even_when_it_is_killed(installation, migrated_database):
     copy_installation(migrated_database, installation.folder)
     installation.start()
-    assert len(installation.remaining_processes()) >= 4
+    wait_for(lambda: len(installation.remaining_processes()) >= 4, "all are started")
     installation.process.kill()
     installation.process.wait()
     wait_for(lambda: installation.remaining_processes() == [], "all processes are gone")

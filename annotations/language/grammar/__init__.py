@@ -42,6 +42,7 @@ from annotations.language.grammar.recognizer import (
     Recognizer,
     RuleBook,
     Run,
+    SententialForms,
     WordChart,
     recognizer_of,
 )

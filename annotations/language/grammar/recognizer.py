@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 from annotations.language.forms import Choice, Nonterminal, Symbols, Text, Wildcard
 from annotations.language.grammar.budget import Budget
-from annotations.language.grammar.expander import Expander, Part
+from annotations.language.grammar.expander import Expander, Part, anonymized
 from annotations.language.grammar.grammar import ROOT, Grammar
 from annotations.language.grammar.lattice import Lattice
 
@@ -36,6 +36,8 @@ Alternative: TypeAlias = "tuple[Item, ...]"
 MOST_FIRST_WORDS = 1_000
 # Commands of which a recogniser remembers what it said.
 MOST_JUDGED = 20_000
+# A sequence with more choices than this is not looked at with its nonterminals as they are.
+MOST_SENTENTIAL_FORMS = 2_000
 NOTHING: frozenset[str] = frozenset()
 NOWHERE: frozenset[int] = frozenset()
 
@@ -322,3 +324,34 @@ class Recognizer:
 def recognizer_of(grammar: Grammar, root: str = ROOT) -> Recognizer:
     """Return the recogniser of a grammar, which all share who ask of the same productions. Raises as it does."""
     return Recognizer(grammar, root)
+
+
+class SententialForms:
+    """Says what a grammar derives of words and nonterminals together, which need not be expanded for it.
+
+    Raises:
+        LanguageError: the grammar has a cycle.
+    """
+
+    def __init__(self, grammar: Grammar) -> None:
+        grammar.require_finite()
+        self._book = RuleBook(
+            Expander(lambda name: (*grammar.alternatives(name), (_as_word(name),)), anonymized)
+        )
+        self._words: Expander[str] = Expander(lambda name: ((_as_word(name),),), anonymized)
+
+    def derives(self, root: str, sequence: Symbols) -> bool:
+        """Return whether ``$root`` derives a sequence, whichever alternatives of its choices one takes.
+
+        So it derives all that the sequence becomes. False also where there are too many choices to look at.
+        """
+        if self._words.size(sequence) > MOST_SENTENTIAL_FORMS:
+            return False
+        rule = self._book.number(Nonterminal(root))
+        forms = self._words.stream(sequence)
+        return all(WordChart(self._book, words).ways(rule) for words, _ in forms)
+
+
+def _as_word(name: str) -> Text:
+    """Return what stands for a nonterminal that is not expanded: no word has a space."""
+    return Text(f" ${name}")

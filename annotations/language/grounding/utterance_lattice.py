@@ -426,8 +426,13 @@ class Everything:
             if self.folded[start : start + len(words)] == words:
                 yield start, start + len(words)
 
+    def _possible(self, phrases: Sequence[list[str]]) -> list[list[str]]:
+        """Return the phrases whose first word was said: few of hundreds."""
+        return [phrase for phrase in phrases if phrase[0] in self.folded]
+
     def _chain(self, phrases: Sequence[list[str]]) -> Iterator[tuple[int, int]]:
         waiting, seen = [0], {0}
+        phrases = self._possible(phrases)
         while waiting:
             place = waiting.pop()
             ranges = [each for phrase in phrases for each in self._places_of(phrase, (place,))]
@@ -441,6 +446,7 @@ class Everything:
 
     def _chain_back(self, phrases: Sequence[list[str]]) -> Iterator[tuple[int, int]]:
         waiting, seen = [len(self.texts)], {len(self.texts)}
+        phrases = self._possible(phrases)
         while waiting:
             end = waiting.pop()
             starts = []

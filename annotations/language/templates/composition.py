@@ -22,12 +22,13 @@ from annotations.language.forms import (
     Condition,
     Form,
     Negation,
+    Nonterminal,
     Symbol,
     Symbols,
     Text,
     Wildcard,
 )
-from annotations.language.grammar import Grammar, Production
+from annotations.language.grammar import ROOT, Grammar, Production, SententialForms
 from annotations.language.templates.filling import map_slots
 from annotations.language.templates.templates import SemanticTemplate
 
@@ -69,6 +70,27 @@ class SynchronousGrammar:
         if name in self.lines_of:
             return tuple(line.pattern for line in self.lines_of[name])
         return self.grammar.alternatives(name)
+
+    def is_inside(self, template: SemanticTemplate) -> bool:
+        """Return whether the productions surely derive all words that a template or a line becomes.
+
+        They do where they derive its pattern as it is, and so the patterns of all lines below it: nothing is expanded.
+        """
+        spoken = self.words.spoken(template.pattern)
+        names = {each.name for each in spoken if isinstance(each, Nonterminal)}
+        return names.isdisjoint(self._doubtful) and self._is_derived(template)
+
+    @cached_property
+    def _doubtful(self) -> frozenset[str]:
+        """The nonterminals with a line whose pattern their productions do not derive as it is."""
+        return frozenset(each.nonterminal for each in self.lines if not self._is_derived(each))
+
+    def _is_derived(self, template: SemanticTemplate) -> bool:
+        return self._sentential_forms.derives(template.nonterminal or ROOT, template.pattern)
+
+    @cached_property
+    def _sentential_forms(self) -> SententialForms:
+        return SententialForms(self.grammar)
 
     def composed(self, template: SemanticTemplate) -> tuple[str, ...]:
         """Return the nonterminals of the form that have lines, in the order of their names."""

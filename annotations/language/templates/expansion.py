@@ -245,7 +245,11 @@ def _expand(chosen: _Chosen, budget: Budget) -> _Expanded:
                 kept.pop(form, None)
                 kept[form] = index
         commands[index] = pairs.keys()
-    inside = chosen.expansions.derived(candidates, budget)
+    rules = chosen.expansions.expander.rules
+    sure = frozenset().union(
+        *(commands[index] for index in commands if rules.is_inside(category.templates[index]))
+    )
+    inside = sure | chosen.expansions.derived(candidates.keys() - sure, budget)
     return _Expanded(category, candidates, commands, inside)
 
 

@@ -189,6 +189,12 @@ class _Judge:
             self._recognizers[category.name] = recognizer_of(category.grammar)
         self._charts = {each.name: TemplateChart([each]) for each in with_templates}
         self._rules = {each.name: _WordRules(each) for each in with_templates}
+        self._inside = {  # the templates all of whose commands the grammar derives
+            (category.name, index)
+            for category in categories
+            for index in self._places[category.name]
+            if self._rules[category.name].grammar.is_inside(category.templates[index])
+        }
 
     def judge(self, drawn: _Drawn) -> _Judged:
         """Return what becomes of the command of a derivation."""
@@ -196,7 +202,10 @@ class _Judge:
         for name in self._charts:
             derivations += self._derivations(drawn, name, is_first=not derivations)
         kept = derivations[0]
-        in_grammar = self._recognizers[kept.task_category].accepts(drawn.command)
+        place = kept.task_category, kept.template_index
+        in_grammar = place in self._inside or self._recognizers[kept.task_category].accepts(
+            drawn.command
+        )
         expansion = Expansion(
             drawn.command, kept.form_text, kept.task_category, kept.template_index, in_grammar
         )
@@ -239,9 +248,11 @@ class _WordRules:
     """
 
     def __init__(self, category: TaskCategory) -> None:
-        grammar = SynchronousGrammar(category.grammar, category.lines)
-        lines = {name: [line.pattern for line in lines] for name, lines in grammar.lines_of.items()}
-        self._book = RuleBook(Expander(grammar.alternatives, anonymized), lines)
+        self.grammar = SynchronousGrammar(category.grammar, category.lines)
+        lines = {
+            name: [line.pattern for line in lines] for name, lines in self.grammar.lines_of.items()
+        }
+        self._book = RuleBook(Expander(self.grammar.alternatives, anonymized), lines)
         self._roots = [
             self._book.add_pattern(each.pattern)
             for each in category.templates

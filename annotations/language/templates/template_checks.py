@@ -172,14 +172,18 @@ class TemplateChecker:
         name = template.nonterminal
         if name and name not in self.grammar.rules:
             return
-        recognizer = recognizer_of(self.grammar, name) if name else self.recognizer
+        # A line may become nothing, which is no command where the line is one for the root.
+        is_inside = all(commands) and self.expander.rules.is_inside(template)
+        recognizer = self.recognizer
+        if name and not is_inside:
+            recognizer = recognizer_of(self.grammar, name)
         judged: list[tuple[str, bool]] = []  # each command and whether it is in the grammar
         with suppress(TooManyCombinations):  # the others are not judged
             distinct = tuple(dict.fromkeys(commands))
             is_large = self.grammar.size() > MOST_ENUMERATED
             step = max(1, len(distinct) // MOST_RECOGNISED) if is_large else 1
             for command in distinct[::step]:
-                judged.append((command, recognizer.accepts(command, budget)))
+                judged.append((command, is_inside or recognizer.accepts(command, budget)))
         outside = [command for command, is_inside in judged if not is_inside]
         if not commands:
             yield warning_at(

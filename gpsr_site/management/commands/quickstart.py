@@ -31,6 +31,7 @@ class Command(BaseCommand):
         "then serve the pages and run two workers and the parse server until stopped; one worker trains, one "
         "does short work."
     )
+    requires_system_checks = []  # they load all pages; the web server makes them before it serves
 
     def handle(self, *args: Any, **options: Any) -> None:
         self.refuse_a_taken_port()
@@ -38,16 +39,18 @@ class Command(BaseCommand):
         call_command("collectstatic", interactive=False, verbosity=0)
         self.create_admin()
         request_first_runs(self.load_world())
-        commands = {
-            **web_server_commands(settings.WEB_PROCESSES),
+        later = {
             "training worker": worker_command("cpu", "gpu"),
             "quick worker": worker_command("quick"),
         }
         if not settings.PARSER_IS_ELSEWHERE:
-            commands["parse server"] = PARSE_SERVER
-        supervisor = Supervisor(commands, self.say)
+            later["parse server"] = PARSE_SERVER
+        # People wait for the first page, so the others leave it the cores.
+        is_announced = threading.Event()
+        web_servers = web_server_commands(settings.WEB_PROCESSES)
+        supervisor = Supervisor(web_servers, self.say, later, is_announced.is_set)
         supervisor.start()
-        threading.Thread(target=self.announce, daemon=True).start()
+        threading.Thread(target=self.announce, args=[is_announced], daemon=True).start()
         supervisor.watch()
         self.say("Stopped.")
 
@@ -94,15 +97,16 @@ class Command(BaseCommand):
             record_command("create a world", "the starter world", world)
         return splits
 
-    def announce(self) -> None:
-        """Print the address once the web server answers."""
+    def announce(self, is_announced: threading.Event) -> None:
+        """Print the address once the web server answers, and set the event then, or after a minute."""
         deadline = time.monotonic() + HEALTH_PATIENCE_SECONDS
-        while time.monotonic() < deadline:
-            if self.answers():
-                self.say(f"GPSR Workbench is at {self.address} (Ctrl-C stops it)")
-                return
+        while not (answers := self.answers()) and time.monotonic() < deadline:
             time.sleep(0.2)
-        self.say(f"The web server has not answered at {self.address} for a minute.")
+        is_announced.set()
+        if answers:
+            self.say(f"GPSR Workbench is at {self.address} (Ctrl-C stops it)")
+        else:
+            self.say(f"The web server has not answered at {self.address} for a minute.")
 
     def answers(self) -> bool:
         """Return whether the web server answers at all; what it answers is the page's business."""

@@ -11,11 +11,12 @@ from annotations.language.forms import (
     canonical_text,
     loose_references,
     places_in_pattern,
+    print_sequence,
     read_form,
     to_corpus,
     to_template,
 )
-from annotations.language.grammar import Budget, Grammar, read_productions
+from annotations.language.grammar import Budget, Grammar, Recognizer, read_productions
 from annotations.language.grounding import (
     FormSlots,
     UtteranceReader,
@@ -312,6 +313,39 @@ def test_parsing_is_the_inverse_of_generating(grammar, templates, lines, whole, 
         assert kept.template_index == expansion.template_index
     for command in map(" ".join, others):
         assert bool(chart.parse(command)) == (command in generated)
+
+
+@given(small_grammars(), st.lists(small_templates(), max_size=2), st.lists(LINES, max_size=3))
+def test_what_is_surely_inside_is_all_derived_by_the_productions(grammar, templates, lines):
+    own = [
+        read_template(f"{print_sequence(each.expansion)} = (say)") for each in grammar.productions
+    ]
+    try:
+        expander = TemplateExpander(grammar, tuple(lines))
+        sizes = [expander.size(each) for each in (*templates, *own, *lines)]
+    except LanguageError:  # a cycle through lines
+        assume(False)
+    assume(sum(sizes) <= FEW)
+    for template in (*templates, *own, *lines):
+        accepts = Recognizer(grammar, template.nonterminal or "Main").accepts
+        said = {command for command, _ in expander.pairs(template)} - {""}
+        if expander.rules.is_inside(template):
+            assert all(map(accepts, said))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "lines", "is_inside"),
+    [
+        ("$goto $next", [GOTO, FIND, THEN, PLACE], True),
+        ("walk to the {room} (then $do | and say hello)", [PLACE], True),
+        ("$goto", ["$goto -> run to the {room} = (go {room})"], False),
+        ("$next", [], False),
+    ],
+)
+def test_a_pattern_is_inside_where_the_productions_derive_it_as_it_is(pattern, lines, is_inside):
+    read = tuple(map(read_template, lines))
+    rules = TemplateExpander(GRAMMAR, read).rules
+    assert rules.is_inside(read_template(f"{pattern} = (say)")) == is_inside
 
 
 def steps(length, alternatives):
