@@ -16,6 +16,7 @@ from annotations.web.corpus import (
     utterance_rest,
 )
 from annotations.web.description import (
+    category_rest,
     check_rest,
     class_rest,
     coverage_rest,
@@ -49,6 +50,7 @@ of_world.register("entities", entity_rest.EntityViewSet, "entity")
 of_world.register("predicates", predicate_rest.PredicateViewSet, "predicate")
 of_world.register("recipes", recipe_rest.RecipeViewSet, "recipe")
 of_world.register("primitives", recipe_rest.PrimitiveViewSet, "primitive")
+of_world.register("task-categories", category_rest.TaskCategoryViewSet, "task-category")
 of_world.register("productions", production_rest.ProductionViewSet, "production")
 of_world.register("templates", template_rest.TemplateViewSet, "template")
 of_world.register("commands", command_rest.CommandViewSet, "command")
@@ -76,7 +78,6 @@ of_site.register("accounts", account_rest.AccountViewSet, "account")
 of_site.register("jobs", job_rest.SiteJobViewSet, "site-job")
 
 description = [
-    path("task-categories/", production_rest.TaskCategories.as_view(), name="task-categories"),
     path("uncovered/", coverage_rest.Uncovered.as_view(), name="uncovered"),
     path("conflicts/", coverage_rest.Conflicts.as_view(), name="conflicts"),
     path("check/template/", check_rest.CheckTemplate.as_view(), name="check-template"),

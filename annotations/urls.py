@@ -11,6 +11,7 @@ from annotations.web.corpus import (
     utterance_pages,
 )
 from annotations.web.description import (
+    category_pages,
     class_pages,
     coverage_pages,
     entity_pages,
@@ -21,6 +22,7 @@ from annotations.web.description import (
     template_pages,
     template_repair_pages,
 )
+from annotations.web.description.category_noun import TASK_CATEGORIES
 from annotations.web.description.class_noun import ENTITY_CLASSES
 from annotations.web.description.entity_noun import ENTITIES
 from annotations.web.description.predicate_noun import PREDICATES
@@ -68,16 +70,23 @@ urlpatterns = [
     *ENTITIES.addresses("ontology/"),
     *ENTITY_CLASSES.addresses("ontology/classes/"),
     *PREDICATES.addresses("predicates/"),
+    *TASK_CATEGORIES.addresses("grammar/categories/"),
     *PRODUCTIONS.addresses("grammar/"),
     *PRIMITIVES.addresses("recipes/primitives/"),
     *RECIPES.addresses("recipes/"),
     path("ontology/paste/", entity_pages.entities_new, name="entities_new"),
     path("ontology/rooms/", room_pages.location_rooms, name="location_rooms"),
     path("ontology/classes/", class_pages.entity_classes, name="entity_classes"),
+    path(
+        "ontology/classes/household/",
+        class_pages.classes_of_household,
+        name="classes_of_household",
+    ),
     path("ontology/classes.css", class_pages.class_colours, name="class_colours"),
     path("recipes/", recipe_pages.recipes, name="recipes"),
     path("recipes/book/", recipe_pages.recipe_book, name="recipe_book"),
     path("recipes/proposed/", recipe_pages.recipes_proposed, name="recipes_proposed"),
+    path("grammar/categories/", category_pages.task_categories, name="task_categories"),
     path("grammar/check/", production_pages.production_check, name="production_check"),
     path("grammar/coverage/", coverage_pages.coverage, name="coverage"),
     path("coverage/", coverage_pages.uncovered, name="uncovered"),

@@ -1,7 +1,7 @@
 """Verbs: delete what nothing uses: a class of entities, or a primitive.
 
-Each takes the row, who deletes it and the version that they saw. It raises Refusal where every world has the row or
-something of its world uses it, and Overtaken where it is at another version or was deleted already.
+Each takes the row, who deletes it and the version that they saw. It raises Refusal where something of
+its world uses it, and Overtaken where it is at another version or was deleted already.
 """
 
 from __future__ import annotations

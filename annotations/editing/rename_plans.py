@@ -1,8 +1,8 @@
-"""Which rows name a nonterminal, a predicate, an entity or a primitive, and what they say once it has another name."""
+"""Which rows name something, such as a nonterminal, and what they say once it has another name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -24,17 +24,27 @@ from annotations.models import (
     AuditDecision,
     AuditFinding,
     AuditReason,
+    CampaignPrompt,
+    Command,
     Editable,
     Entity,
     Label,
+    LogicalForm,
     Paraphrase,
     Predicate,
     Primitive,
     Production,
     SemanticTemplate,
+    TaskCategory,
     Utterance,
 )
-from annotations.rows.composition import split_entry
+from annotations.rows.composition import (
+    RULES,
+    TEMPLATES,
+    require_set_name,
+    rule_files,
+    split_entry,
+)
 from annotations.rows.from_rows import primitive_of, recipe_of
 
 
@@ -206,6 +216,78 @@ class PrimitiveRename:
         return str(replace(recipe, calls=tuple(calls)))
 
 
+class CategoryRename:
+    """Renames a task category, with the sets that are named after it, in all that belongs to it."""
+
+    def __init__(self, row: TaskCategory, old: str) -> None:
+        self.row = row
+        self.old = row.name
+        self.grammar = row.grammar
+
+    def require_free(self, new: str) -> None:
+        require_set_name(new)
+        others = self.grammar.task_categories.exclude(pk=self.row.pk)
+        sets = {each.lower() for each in (*rule_files(others), *self._templates_of(others))}
+        is_taken = others.filter(name__iexact=new).exists() or self.old == new
+        if is_taken or not sets.isdisjoint({f"{new}{RULES}".lower(), f"{new}{TEMPLATES}".lower()}):
+            raise LanguageError(
+                f"there is a task category or a set {new} already", hint="choose another name"
+            )
+
+    def changes(self, new: str) -> Iterator[tuple[str, RenamedRows]]:
+        old, world = self.old, self.row.owning_world
+        files = {f"{old}{ending}": f"{new}{ending}" for ending in (RULES, TEMPLATES)}
+        renamed_categories = (
+            (
+                each,
+                {
+                    "name": new if each.pk == self.row.pk else each.name,
+                    "rule_sources": [_rename_set(entry, files) for entry in each.rule_sources],
+                    "template_sources": [files.get(name, name) for name in each.template_sources],
+                },
+            )
+            for each in self.grammar.task_categories.all()
+        )
+        yield "task category", differing(renamed_categories)
+        for noun, rows in (
+            ("production", self.grammar.productions.all()),
+            ("template", self.grammar.templates.all()),
+        ):
+            of_it = rows.filter(Q(task_category=old) | Q(source__in=files))
+            yield (
+                noun,
+                differing(
+                    (
+                        each,
+                        {
+                            "task_category": new
+                            if each.task_category == old
+                            else each.task_category,
+                            "source": files.get(each.source, each.source),
+                        },
+                    )
+                    for each in of_it
+                ),
+            )
+        prompts = CampaignPrompt.objects.filter(campaign__world=world)
+        for noun, made in (
+            ("command", Command.objects.filter(world=world)),
+            ("form", LogicalForm.objects.filter(world=world)),
+            ("prompt", prompts),
+        ):
+            yield noun, [(each, {"task_category": new}) for each in made.filter(task_category=old)]
+
+    @staticmethod
+    def _templates_of(categories: Iterable[TaskCategory]) -> Iterator[str]:
+        return (name for each in categories for name in each.template_sources)
+
+
+def _rename_set(entry: str, files: Mapping[str, str]) -> str:
+    source, alias = split_entry(entry)
+    renamed = files.get(source, source)
+    return f"{renamed} as ${alias}" if alias else renamed
+
+
 def _rename_alias(entry: str, old: str, new: str) -> str:
     source, alias = split_entry(entry)
     return f"{source} as ${new}" if alias == old else entry
@@ -216,4 +298,5 @@ PLANS: dict[type[Editable], Callable[[Any, str], RenamePlan]] = {
     Predicate: PredicateRename,
     Entity: EntityRename,
     Primitive: PrimitiveRename,
+    TaskCategory: CategoryRename,
 }

@@ -16,9 +16,11 @@ from annotations.models import (
     AuditDecision,
     AuditFinding,
     AuditReason,
+    CampaignPrompt,
+    Command,
     Editable,
     Label,
-    TaskCategory,
+    LogicalForm,
     User,
     World,
 )
@@ -125,7 +127,9 @@ def rename(row: Editable, old: str, new: str, by: User, version: int) -> tuple[T
 
 # Rows that have no version and no history, and their fields that name something.
 COLUMNS = {
-    TaskCategory: ["rule_sources"],
+    Command: ["task_category"],
+    LogicalForm: ["task_category"],
+    CampaignPrompt: ["task_category"],
     Label: ["form"],
     AuditFinding: ["form", "suggested_form", "decided_form"],
     AuditReason: ["suggested_form"],

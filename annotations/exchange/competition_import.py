@@ -137,6 +137,7 @@ def import_competition(
     progress.report(0.6, "writing")
     with progress.writing():
         world = lock_world(world_name, by)
+        world.entity_classes.add_of_household(world)
         stored, _ = models.Ontology.objects.select_related("world").get_or_create(world=world)
         planned = plan_competition(stored, ontology, brings_back)
         changes = planned.apply(by)

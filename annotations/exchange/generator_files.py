@@ -19,6 +19,8 @@ from annotations.language.templates import (
 )
 from annotations.language.texts import LanguageError, Position, Problem, read_text, warning_at
 from annotations.language.world import (
+    CLASSES_FILE,
+    ENTITIES_FILE,
     ONTOLOGY_FILES,
     Ontology,
     Predicate,
@@ -26,7 +28,9 @@ from annotations.language.world import (
     infer_signatures,
     read_ontology,
 )
+from annotations.models import World
 from annotations.models.description import ProblemSubject
+from annotations.rows.from_rows import classes_of
 from annotations.rows.stored_problems import first_problems
 
 # Above this many pairs signatures are inferred from the templates as they are, unexpanded.
@@ -90,6 +94,18 @@ def read_generator(
         ProblemSubject.TEMPLATES: first_problems(of_templates),
     }
     return Generator(texts, ontology, predicates, by_subject)
+
+
+def classes_to_read(world: World | None, names: Iterable[str]) -> EntityClasses:
+    """Return the classes that files of these names may use in ``world``, which an import then stores.
+
+    A world by hand has its own alone. Those of GPSRCmdGen come with its files of entities, and to a world without any.
+    """
+    own = classes_of(world) if world else EntityClasses(())
+    of_household = {*ONTOLOGY_FILES} - {CLASSES_FILE, ENTITIES_FILE}
+    if own.rows and of_household.isdisjoint(name.lower() for name in names):
+        return own
+    return DEFAULT_CLASSES.with_rows(own)
 
 
 def _read_declared(

@@ -9,9 +9,11 @@ from typing import Any, Self
 from annotations import models
 from annotations.background.progress import UNWATCHED, Progress
 from annotations.exchange.gathered_files import gather
-from annotations.exchange.generator_files import Generator, read_generator
+from annotations.exchange.generator_files import Generator, classes_to_read, read_generator
 from annotations.exchange.import_plans import (
+    categories_of_people,
     differences_of,
+    plan_categories,
     plan_classes,
     plan_entities,
     plan_predicates,
@@ -23,15 +25,13 @@ from annotations.exchange.source_files import FileSource, GatheredFiles
 from annotations.exchange.target_world import lock_world, require_world_name
 from annotations.generation.coverage import count_coverage, known_commands, store_coverage
 from annotations.generation.world_problems import check_again
-from annotations.language.forms import DEFAULT_CLASSES
 from annotations.language.texts import LanguageError
 from annotations.models import Entity, Production, User, World
 from annotations.models.description import ProblemSubject
-from annotations.rows.composition import rule_sources, template_sources
-from annotations.rows.from_rows import classes_of, predicates_of, task_categories
+from annotations.rows.from_rows import predicates_of, task_categories
 from annotations.rows.staging import Staging
 from annotations.rows.stored_problems import store_problems, store_problems_of_import
-from annotations.rows.synchronise import Changes, RowPlan, synchronise
+from annotations.rows.synchronise import Changes, RowPlan
 
 
 def import_generator(
@@ -67,7 +67,7 @@ def import_generator(
     progress.report(0.05, "reading the files")
     world = World.objects.filter(name=world_name).first()
     edited = predicates_of(world, world.predicates.filter(is_edited=True)) if world else {}
-    classes = classes_of(world) if world else DEFAULT_CLASSES
+    classes = classes_to_read(world, gathered.files)
     generator = read_generator(gathered.files, edited, gathered.problems, classes)
     progress.check()
     texts = generator.texts
@@ -108,7 +108,8 @@ def _compare_and_store(
     with prepared as productions, progress.writing():
         world = lock_world(report.world, by)
         changes = store(world, generator, productions, by, brings_back)
-        if report.left_out.productions:  # the grammar is not that of the files
+        # The grammar is not that of the files where lines were left out or people have changed a task category.
+        if report.left_out.productions or apart.has_own_categories:
             coverage = count_coverage(task_categories(world), known_commands(world))
         store_coverage(world, coverage)
         # The problems of the rows are not those of the files where lines were left out.
@@ -154,7 +155,9 @@ class PreparedProductions:
     ) -> Changes:
         """Write them, inside a transaction; compare again if somebody has changed the world since."""
         if world.revision != self._revision:
-            return plan_productions(grammar, self._generator, self._brings_back).apply(by)
+            of_people = categories_of_people(grammar)
+            planned = plan_productions(grammar, self._generator, self._brings_back, of_people)
+            return planned.apply(by)
         self._plan.apply_to_stored(by)
         self._staging.insert(grammar_id=str(int(grammar.pk)))
         return self._plan.changes
@@ -176,20 +179,10 @@ def store(
     """
     grammar, _ = models.Grammar.objects.select_related("world").get_or_create(world=world)
     ontology, _ = models.Ontology.objects.select_related("world").get_or_create(world=world)
-    wanted = [
-        models.TaskCategory(
-            grammar=grammar,
-            name=category.name,
-            position=position,
-            rule_sources=rule_sources(generator.texts.grammars, category.grammar_file),
-            template_sources=template_sources(category),
-        )
-        for position, category in enumerate(generator.texts.compositions)
-    ]
-    fields = ["position", "rule_sources", "template_sources"]
-    changes = synchronise(grammar.task_categories.all(), wanted, lambda row: row.name, fields)
+    of_people = categories_of_people(grammar)
+    changes = plan_categories(grammar, generator, of_people).apply(by)
     changes += productions.apply(world, grammar, by)
-    changes += plan_templates(grammar, generator, brings_back).apply(by)
+    changes += plan_templates(grammar, generator, brings_back, of_people).apply(by)
     if not changes.is_none or changes.moved:
         world.mark_changed()
     changes += plan_classes(world, generator).apply(by)

@@ -15,6 +15,7 @@ from annotations.exchange.competition_import import (
     import_competition,
 )
 from annotations.exchange.gathered_files import gather
+from annotations.exchange.generator_files import classes_to_read
 from annotations.exchange.generator_import import import_generator
 from annotations.exchange.import_reports import ImportReport, PairsReport
 from annotations.exchange.pair_files import gather_pairs
@@ -24,7 +25,6 @@ from annotations.language.templates import generation_size, read_generator_files
 from annotations.language.texts import LanguageError
 from annotations.language.world import CLASSES_FILE, read_ontology
 from annotations.models import Job, JobKind, User, World
-from annotations.rows.from_rows import classes_of
 
 
 def start_generator_import(
@@ -42,7 +42,7 @@ def start_generator_import(
     kind = JobKind.IMPORT_GENERATOR
     choices = {"brings_back": brings_back, "encoding": encoding}
     files = gather(uploads, encoding)
-    if is_heavy_generator(files.files, classes_of(world)):
+    if is_heavy_generator(files.files, classes_to_read(world, files.files)):
         return request_job(kind, world.name, by, choices, uploads)
     report = import_generator(world.name, files, by, may_remove=False, brings_back=brings_back)
     if report.is_waiting:

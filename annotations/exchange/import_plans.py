@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 from annotations import models
 from annotations.exchange.generator_files import Generator
 from annotations.language.forms import print_sequence
 from annotations.models.description import TemplateStatus
-from annotations.rows.composition import owners
+from annotations.rows.composition import owners, rule_sources, split_entry, template_sources
 from annotations.rows.decisions import respect
 from annotations.rows.history import keys_changed_by_people
 from annotations.rows.synchronise import RowPlan, plan
+
+Categories: TypeAlias = Sequence[models.TaskCategory]  # those that people added, changed or renamed
 
 
 @dataclass(frozen=True)
@@ -37,10 +40,11 @@ class Differences:
 
     ``removals`` are rows that the files lack. ``left_out`` are lines that are not stored because people
     have deleted, moved or renamed the row: each with its file, and who did what. ``productions`` says what
-    it takes to store them.
+    it takes to store them; ``has_own_categories`` whether people have added or changed task categories.
     """
 
     productions: RowPlan[models.Production]
+    has_own_categories: bool = False
     removals: RowTexts = field(default_factory=RowTexts)
     left_out: RowTexts = field(default_factory=RowTexts)
 
@@ -53,10 +57,11 @@ def differences_of(
         return Differences(plan_productions(models.Grammar(), generator, brings_back))
     grammar = models.Grammar.objects.select_related("world").filter(world=world).first()
     ontology = models.Ontology.objects.select_related("world").filter(world=world).first()
-    productions = plan_productions(grammar or models.Grammar(), generator, brings_back)
+    of_people = categories_of_people(grammar) if grammar else ()
+    productions = plan_productions(grammar or models.Grammar(), generator, brings_back, of_people)
     plans: dict[str, RowPlan[Any]] = {"productions": productions}
     if grammar:
-        plans["templates"] = plan_templates(grammar, generator, brings_back)
+        plans["templates"] = plan_templates(grammar, generator, brings_back, of_people)
     if ontology:
         plans["entities"] = plan_entities(ontology, generator, brings_back)
     removals = {
@@ -73,14 +78,53 @@ def differences_of(
         )
         for name, planned in plans.items()
     }
-    return Differences(productions, RowTexts(**removals), RowTexts(**left_out))
+    return Differences(productions, bool(of_people), RowTexts(**removals), RowTexts(**left_out))
+
+
+def plan_categories(
+    grammar: models.Grammar, generator: Generator, of_people: Categories
+) -> RowPlan[models.TaskCategory]:
+    """Plan the task categories; those ``of_people`` stay as they are."""
+    kept = {own: row for row in of_people for own in _own_files(row)}
+    wanted = []
+    for position, category in enumerate(generator.texts.compositions):
+        row = models.TaskCategory(
+            grammar=grammar,
+            name=category.name,
+            position=position,
+            rule_sources=rule_sources(generator.texts.grammars, category.grammar_file),
+            template_sources=template_sources(category),
+        )
+        if stored := kept.get(category.grammar_file):
+            row.name, row.rule_sources = stored.name, stored.rule_sources
+            row.template_sources = stored.template_sources
+        wanted.append(row)
+    fields = ["position", "rule_sources", "template_sources"]
+    stored_rows = grammar.task_categories.all()
+    return plan(stored_rows, wanted, lambda row: row.name, fields, of_people.__contains__)
+
+
+def categories_of_people(grammar: models.Grammar) -> list[models.TaskCategory]:
+    """Return the task categories that people added, changed or renamed."""
+    keys = keys_changed_by_people(models.TaskCategory, grammar.world)
+    return list(grammar.task_categories.filter(pk__in=keys)) if keys else []
+
+
+def _own_files(row: models.TaskCategory) -> tuple[str, str]:
+    return split_entry(row.rule_sources[-1])[0], row.template_sources[-1]
+
+
+def _owners(generator: Generator, of_people: Categories) -> dict[str, str]:
+    """Return file → the task category that it was written for, by the names that people gave these."""
+    names = {own: row.name for row in of_people for own in _own_files(row)}
+    return owners(generator.texts.compositions) | names
 
 
 def plan_productions(
-    grammar: models.Grammar, generator: Generator, brings_back: bool
+    grammar: models.Grammar, generator: Generator, brings_back: bool, of_people: Categories = ()
 ) -> RowPlan[models.Production]:
     """Plan the productions of ``grammar``, in the order of the files and their lines."""
-    owner_by_file = owners(generator.texts.compositions)
+    owner_by_file = _owners(generator, of_people)
     files = generator.texts.grammars.files.values()
     lines = [line for file in files for line in file.productions]
     wanted = [
@@ -111,10 +155,10 @@ def _key_of_production(row: models.Production) -> tuple[str, str, str]:
 
 
 def plan_templates(
-    grammar: models.Grammar, generator: Generator, brings_back: bool
+    grammar: models.Grammar, generator: Generator, brings_back: bool, of_people: Categories
 ) -> RowPlan[models.SemanticTemplate]:
     """Plan the templates; those that people wrote or changed stay, whatever the files have."""
-    owner_by_file = owners(generator.texts.compositions)
+    owner_by_file = _owners(generator, of_people)
     lines = [line for templates in generator.texts.templates.values() for line in templates]
     wanted = [
         models.SemanticTemplate(

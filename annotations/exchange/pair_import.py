@@ -112,6 +112,10 @@ def _store(
             locked = lock_world(report.world, by)
             if world is not None and locked.generations != world.generations:
                 return None
+            if (
+                not locked.entity_classes.exists()
+            ):  # begun by hand; published pairs are of a household
+                locked.entity_classes.add_of_household(locked)
             paraphrases = plan_paraphrases(locked, files.triples, forms, sources, brings_back)
             added = paraphrases.apply(by).added
             for split in splits:

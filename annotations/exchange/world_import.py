@@ -23,9 +23,10 @@ from annotations.exchange.row_texts import equal_row, normalise_columns
 from annotations.exchange.target_world import require_world_name
 from annotations.exchange.world_deletion import delete_world
 from annotations.exchange.world_manifest import WorldManifest, read_manifest
+from annotations.generation.class_uses import count_uses
 from annotations.generation.freezing import content_hash_of
 from annotations.generation.split_statistics import store_figures
-from annotations.language.forms import EntityClasses
+from annotations.language.forms import DEFAULT_CLASSES, EntityClasses
 from annotations.language.texts import (
     LanguageError,
     Position,
@@ -37,6 +38,7 @@ from annotations.language.texts import (
 )
 from annotations.models import (
     Assignment,
+    EntityClass,
     Grammar,
     Membership,
     Ontology,
@@ -141,12 +143,13 @@ def _publish(world: World, name: str, by: User | None) -> None:
 
 
 def _check_world(world: World) -> None:
-    """Raises LanguageError where a text that pages and parsers read cannot be read."""
+    """Store what the rows use without saying so. Raises LanguageError where pages and parsers could not read a text."""
     for category in annotated_categories(world):
-        for problem in category.value.grammar.problems():
-            if problem.is_error:
-                raise LanguageError(problem.message, problem.position, problem.hint)
+        category.value.grammar.require_finite()  # its $Main may be still to be written
     predicates_of(world)
+    for row in EntityClass.objects.missing_of_household(world):
+        if any(count_uses(row).values()):
+            row.save()
     for split in Split.objects.filter(world=world):
         if content_hash_of(split) != split.content_hash:
             raise LanguageError(f"the pairs of the split {split} are not those that were frozen")
@@ -172,8 +175,11 @@ class _Loader:
 
     @cached_property
     def _stored_classes(self) -> EntityClasses:
-        """The classes of the entities, once their table has been read, which is the first."""
-        return classes_of(self._world)
+        """The classes of the entities, once their table has been read, which is the first.
+
+        Worlds used those of a household without a row of their own, until ``_check_world`` stored them.
+        """
+        return DEFAULT_CLASSES.with_rows(classes_of(self._world))
 
     def load(self) -> dict[str, int]:
         """Store the rows of all tables; return how many by table. Raises LanguageError."""

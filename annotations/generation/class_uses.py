@@ -10,8 +10,6 @@ from annotations.models import Entity, EntityClass, Production, SemanticTemplate
 
 def why_kept(row: EntityClass) -> str:
     """Return a sentence that says why the class cannot be deleted; empty where it can."""
-    if row.is_of_every_world:
-        return f"Every world has the class {row.token}. It cannot be deleted."
     uses = [say_count(number, noun) for noun, number in count_uses(row).items() if number]
     if not uses:
         return ""

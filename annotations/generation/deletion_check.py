@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from annotations.generation.category_uses import why_category_is_kept
 from annotations.generation.class_uses import why_kept
 from annotations.generation.predicate_check import BrokenTemplates, templates_without
 from annotations.generation.production_check import ProductionEdit, problems_without
@@ -24,6 +25,7 @@ from annotations.models import (
     Primitive,
     Production,
     SemanticTemplate,
+    TaskCategory,
 )
 from annotations.rows.from_rows import lines_of, ontology_of
 from annotations.rows.occurrences import EntityOccurrences, occurrences_of
@@ -55,6 +57,8 @@ def check_deletion(row: Editable) -> DeletionCheck:
             return DeletionCheck(expected, problems_without(edit))
         case EntityClass():
             return DeletionCheck(refusal=why_kept(row))
+        case TaskCategory():
+            return DeletionCheck(refusal=why_category_is_kept(row))
         case Primitive():
             return DeletionCheck(refusal=why_primitive_is_kept(row))
         case Predicate():

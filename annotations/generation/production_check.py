@@ -14,7 +14,7 @@ from annotations.language.grammar import CHECK_STEPS, Budget, Grammar, readable
 from annotations.language.templates import SemanticTemplate, SynchronousGrammar
 from annotations.language.texts import LanguageError, Position, Problem
 from annotations.models import Production, TaskCategory, World
-from annotations.rows.composition import split_entry
+from annotations.rows.composition import categories_to_write_for, plain_name, split_entry
 from annotations.rows.from_rows import (
     Line,
     Lines,
@@ -68,7 +68,7 @@ class ProductionEdit:
 
     def categories(self) -> Iterator[TaskCategory]:
         """Yield the task categories whose grammar has the file."""
-        for category in TaskCategory.objects.filter(grammar__world=self.world):
+        for category in categories_to_write_for(self.world, plain_name(self.source)):
             if self.source in [split_entry(entry)[0] for entry in category.rule_sources]:
                 yield category
 

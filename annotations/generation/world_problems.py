@@ -18,18 +18,22 @@ def check_again(world: World, model: type[Editable]) -> None:
     """
     if model is Entity:
         store_problems(world, ProblemSubject.ONTOLOGY, tuple(ontology_problems(ontology_of(world))))
-    elif model is Production:
+    elif model in (Production, TaskCategory):
         store_problems(world, ProblemSubject.GRAMMAR, grammar_problems(world))
-    if model in (Production, Predicate):
+    if model in (Production, TaskCategory, Predicate):
         check_unready_templates(world)
 
 
 def grammar_problems(world: World) -> tuple[Problem, ...]:
-    """Return the problems of the grammars of all task categories, each once, in the order of the files."""
+    """Return the problems of the grammars of all task categories, each once, in the order of the files.
+
+    A task category that has no productions yet has none.
+    """
     problems: set[Problem] = set()
     for category in TaskCategory.objects.filter(grammar__world=world):
         try:
-            problems |= set(grammar_of(category).problems())
+            grammar = grammar_of(category)
+            problems |= set(grammar.problems() if grammar.productions else ())
         except LanguageError as error:
             problems.add(error.problem)
     return tuple(sorted(problems))

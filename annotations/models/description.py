@@ -33,15 +33,20 @@ MOST_CHARACTERS_OF_GUIDELINES = 20_000
 
 class EntityClassQuerySet(models.QuerySet["EntityClass"]):
     def as_value(self) -> EntityClasses:
-        """Return the classes as a value. Those that every world has come first, whether they have rows or not."""
-        return DEFAULT_CLASSES.with_rows(row.as_value for row in self)
+        """Return the classes as a value, in order."""
+        return EntityClasses(tuple(row.as_value for row in self))
 
-    def add_defaults(self, world: World) -> None:
-        """Store the classes that a new world starts with."""
-        rows = (
-            EntityClass.of(world, value, position) for position, value in enumerate(DEFAULT_CLASSES)
-        )
-        self.bulk_create(rows)
+    def add_of_household(self, world: World) -> None:
+        """Store those classes of GPSRCmdGen that ``world`` has not got, behind its own."""
+        self.bulk_create(self.missing_of_household(world))
+
+    def missing_of_household(self, world: World) -> list[EntityClass]:
+        """Return, unsaved, those classes of GPSRCmdGen that ``world`` has not got."""
+        rows = list(world.entity_classes.all())
+        tokens = {row.token for row in rows}
+        missing = (value for value in DEFAULT_CLASSES if value.token not in tokens)
+        first = rows[-1].position + 1 if rows else 0
+        return [EntityClass.of(world, value, n) for n, value in enumerate(missing, first)]
 
 
 class EntityClass(Editable):
@@ -88,11 +93,6 @@ class EntityClass(Editable):
         return ClassValue(
             self.token, self.singular, self.plural, self.hue, self.said, self.is_closed
         )
-
-    @property
-    def is_of_every_world(self) -> bool:
-        """Whether a new world starts with it, so that no world goes without."""
-        return self.token in DEFAULT_CLASSES
 
 
 class BookRow(Editable):
@@ -305,16 +305,21 @@ class Grammar(models.Model):
         return f"grammar of {self.world}"
 
 
-class TaskCategory(models.Model):
+class TaskCategory(Editable):
     """A difficulty class of commands, with the rule and template sets it is generated from, in order.
 
     ``rule_sources`` and ``template_sources`` are lists of ``Production.source`` and
-    ``SemanticTemplate.source``; where two templates give one command different forms, the later wins.
+    ``SemanticTemplate.source``, the category's own last; where two templates give one command different
+    forms, the later wins.
 
     ``commands_in_grammar`` counts the distinct commands of its grammar and ``commands_with_form``
     those among them that have a logical form, as of the last import or generation. Both are None
     where nothing was counted, or the grammar is too large to count (``annotations.generation.coverage``).
     """
+
+    world_path = "grammar__world"
+    edited_fields = ("name", "rule_sources", "template_sources")
+    bears_on_commands = True
 
     grammar = models.ForeignKey(Grammar, on_delete=models.CASCADE, related_name="task_categories")
     name = models.CharField(max_length=60)
@@ -325,9 +330,13 @@ class TaskCategory(models.Model):
     commands_with_form = models.PositiveIntegerField(null=True, editable=False)
 
     class Meta:
-        ordering = ["position"]
+        ordering = ["position", "pk"]
         constraints = [
-            models.UniqueConstraint(fields=["grammar", "name"], name="task_category_name")
+            models.UniqueConstraint(
+                fields=["grammar", "name"],
+                name="task_category_name",
+                violation_error_message="There is a task category of this name already.",
+            )
         ]
         verbose_name_plural = "task categories"
 

@@ -120,6 +120,10 @@ class World(models.Model):
         declared: dict[str, Predicate]  # where ``form_presentation`` keeps them
         classes: EntityClasses
 
+    is_bare = (
+        False  # of a new one: whether it is begun by hand, where imports bring classes of entities
+    )
+
     objects = WorldQuerySet.as_manager()
 
     class Meta:
@@ -129,13 +133,14 @@ class World(models.Model):
         return self.name
 
     def save(self, *args: Any, **kwargs: Any) -> None:
-        """Store the world; a new one with the classes of entities and the recipes that every world starts with."""
+        """Store the world; a new one with a household's recipes, and its classes of entities unless it ``is_bare``."""
         is_new = self._state.adding
         super().save(*args, **kwargs)
         if is_new:
             from annotations.language.plans import default_book
 
-            self.entity_classes.add_defaults(self)
+            if not self.is_bare:
+                self.entity_classes.add_of_household(self)
             self.primitives.start_book(self, default_book())
             self.recipes.start_book(self, default_book())
 

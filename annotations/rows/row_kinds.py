@@ -20,6 +20,7 @@ from annotations.models import (
     Production,
     Recipe,
     SemanticTemplate,
+    TaskCategory,
     Utterance,
     World,
 )
@@ -91,6 +92,10 @@ KINDS = {
     for kind in (
         EditableKind("template", SemanticTemplate, "templates", "templates", "template"),
         EditableKind("production", Production, "productions", "grammar", "production"),
+        EditableKind(
+            *("task_category", TaskCategory, "task categories", "task_categories", "task_category"),
+            called="task category",
+        ),
         EditableKind("entity", Entity, "entities", "ontology", "entity"),
         EditableKind(
             *("entity_class", EntityClass, "classes", "entity_classes", "entity_class"),

@@ -45,11 +45,25 @@ def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
         return []
     steps = [
         FirstStep(
-            "Import the files of a command generator: ontology, grammar and, if there are any, "
-            "templates.",
+            "Import the files of a command generator or a competition, if you have them.",
             "Import files",
             "import",
             Duty.MANAGE,
+            bool(counts.productions),
+            is_optional=True,
+        ),
+        FirstStep(
+            "Name what your robot knows: plants, beds, people.",
+            "Name an entity",
+            "entity_new",
+            Duty.ANNOTATE,
+            bool(counts.entities),
+        ),
+        FirstStep(
+            "Write a grammar: how people say the commands.",
+            "Write a production",
+            "production_new",
+            Duty.ANNOTATE,
             bool(counts.productions),
         ),
         FirstStep(

@@ -98,6 +98,7 @@ DESCRIBE = (
         page="grammar",
         count="productions",
         waiting=Waiting(count="grammar_problems", noun="warning", reason="to read"),
+        tabs=(RailEntry(label="Task categories", page="task_categories"),),
     ),
     RailEntry(
         label="Templates",

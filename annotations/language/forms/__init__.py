@@ -20,6 +20,7 @@ from annotations.language.forms.entity_classes import (
     EntityClass,
     EntityClasses,
     is_token,
+    new_hue,
     require_token,
     wildcard_names,
 )

@@ -1,7 +1,7 @@
-"""The classes of entities that an ontology has, and those that a new world starts with.
+"""The classes of entities that an ontology has, and those of GPSRCmdGen.
 
-The classes are data of a world. ``entity_classes.toml`` beside this module says what a new world starts with;
-nothing else lists them.
+The classes are data of a world. ``entity_classes.toml`` beside this module says what GPSRCmdGen's files are made of:
+a household. Imports bring these classes, a world by hand has only its own; nothing else lists them.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ MAX_TOKEN = 20  # characters
 MAX_CLASS_WORDS = 60  # characters of the words for a class
 MOST_CLASSES = 100
 HUES = 360  # degrees of a colour wheel (OKLCH)
+FIRST_HUE = 145
 
 # Words that mean something else where the token of a class can stand: in wildcards, as kinds of arguments, in glosses.
 RESERVED = frozenset(
@@ -129,8 +130,22 @@ def is_token(text: str) -> bool:
 
 
 def wildcard_names(classes: EntityClasses) -> tuple[str, ...]:
-    """Return the words with which a wildcard can begin: the classes, and what the generator has beside them."""
-    return tuple(dict.fromkeys((*classes.tokens, *NO_ENTITY, *ALIASES)))
+    """Return the words with which a wildcard can begin: the classes, and what the generator has beside them.
+
+    Its aliases, such as ``kobject``, are of some of its classes: a world without these has not got them.
+    """
+    aliases = (name for name, (kind, _) in ALIASES.items() if kind in classes)
+    return tuple(dict.fromkeys((*classes.tokens, *NO_ENTITY, *aliases)))
+
+
+def new_hue(classes: EntityClasses) -> int:
+    """Return the hue that is the farthest from those of ``classes``."""
+    taken = [each.hue for each in classes]
+
+    def distance(hue: int) -> int:
+        return min((min((hue - each) % HUES, (each - hue) % HUES) for each in taken), default=0)
+
+    return max(range(0, HUES, 5), key=distance) if taken else FIRST_HUE
 
 
 def require_token(token: str) -> None:
@@ -153,7 +168,7 @@ def require_token(token: str) -> None:
 
 
 def read_default_classes(path: Path) -> EntityClasses:
-    """Read the classes that a new world starts with."""
+    """Read the classes of GPSRCmdGen."""
     rows = tomllib.loads(path.read_text(encoding="utf-8"))["classes"]
     return EntityClasses(tuple(EntityClass(**row) for row in rows))
 

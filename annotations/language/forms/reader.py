@@ -59,12 +59,14 @@ def read_head(cursor: Cursor, classes: EntityClasses | None = None) -> WildcardH
     start = cursor.index
     written = cursor.match(_LETTERS_BEFORE_ID) or cursor.match(_HEAD_WORD)
     if written is None:
-        names = wildcard_names(classes or DEFAULT_CLASSES)
+        names = wildcard_names(DEFAULT_CLASSES if classes is None else classes)
         raise cursor.fail("a wildcard needs a kind", f"one of {', '.join(names)}")
     name = written.lower()
-    is_known = TOKEN.fullmatch(name) if classes is None else name in wildcard_names(classes)
-    if not is_known:
-        raise cursor.fail(*no_such_kind(written, classes or DEFAULT_CLASSES), at=start)
+    if classes is None:
+        if not TOKEN.fullmatch(name):
+            raise cursor.fail(*no_such_kind(written, DEFAULT_CLASSES), at=start)
+    elif name not in wildcard_names(classes):
+        raise cursor.fail(*no_such_kind(written, classes), at=start)
     cursor.skip_spaces()
     obfuscated = cursor.accept("?")
     type_ = ""
@@ -86,7 +88,8 @@ def no_such_kind(written: str, classes: EntityClasses) -> tuple[str, str]:
     """Return the message and the hint for a wildcard of a kind that is not of ``classes``."""
     names = wildcard_names(classes)
     near = get_close_matches(written.lower(), names, 1)
-    hint = f"did you mean {{{near[0]}}}?" if near else f"the kinds are {', '.join(names)}"
+    listed = f"add a class {written}, or use one of {', '.join(names)}"
+    hint = f"did you mean {{{near[0]}}}?" if near else listed
     return f"there is no wildcard {{{written}}}", hint
 
 

@@ -17,6 +17,7 @@ from annotations.language.world.glossing import NAMING
 from annotations.language.world.ontology_checks import ontology_problems
 from annotations.language.world.ontology_files import (
     CLASSES_FILE,
+    ENTITIES_FILE,
     ONTOLOGY_FILES,
     read_ontology,
     write_ontology,

@@ -6,8 +6,15 @@ from typing import Any
 
 from django import forms
 
-from annotations.language.forms import HUES, MAX_CLASS_WORDS, MAX_TOKEN, MOST_CLASSES, require_token
-from annotations.language.texts import LanguageError, Position, require_writable
+from annotations.language.forms import (
+    HUES,
+    MAX_CLASS_WORDS,
+    MAX_TOKEN,
+    MOST_CLASSES,
+    new_hue,
+    require_token,
+)
+from annotations.language.texts import LanguageError, Position, plural, require_writable
 from annotations.models import EntityClass
 from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import sentence_of
@@ -25,17 +32,27 @@ class EntityClassForm(NounForm):
         max_length=MAX_TOKEN,
         help_text="The word of its wildcard and its class token: pose for {pose} and <pose>.",
     )
-    singular = forms.CharField(max_length=MAX_CLASS_WORDS, help_text="One of them: pose.")
-    plural = forms.CharField(max_length=MAX_CLASS_WORDS, help_text="Several: poses.")
+    singular = forms.CharField(
+        max_length=MAX_CLASS_WORDS,
+        required=False,
+        help_text="One of them: pose. Empty: as the token says.",
+    )
+    plural = forms.CharField(
+        max_length=MAX_CLASS_WORDS,
+        required=False,
+        help_text="Several: poses. Empty: made from the word for one.",
+    )
     said = forms.CharField(
         label="Said",
         max_length=MAX_CLASS_WORDS,
-        help_text="The noun for one that a form leaves open, without an article.",
+        required=False,
+        help_text="The noun for one that a form leaves open, without an article. Empty: the word for one.",
     )
     hue = forms.IntegerField(
         min_value=0,
         max_value=HUES - 1,
-        help_text="The angle of its colour: 30 is orange, 145 green.",
+        required=False,
+        help_text="The angle of its colour: 30 is orange, 145 green. Empty: unlike the others.",
     )
     is_closed = forms.BooleanField(
         label="Closed",
@@ -65,6 +82,12 @@ class EntityClassForm(NounForm):
                 self.add_error(name, sentence_of(error))
             if name in cleaned:
                 cleaned[name] = words
+        if not self.errors:
+            one = cleaned["singular"] = cleaned["singular"] or cleaned["token"].replace("_", " ")
+            cleaned["plural"] = cleaned["plural"] or plural(one)[:MAX_CLASS_WORDS]
+            cleaned["said"] = cleaned["said"] or one
+            if cleaned["hue"] is None:
+                cleaned["hue"] = new_hue(self.world.entity_classes.all().as_value())
         return cleaned
 
     @property

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from rest_framework import serializers
+from typing import Any
 
-from annotations.models import EntityClass
+from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
+from rest_framework.decorators import action
+from rest_framework.response import Response
+
+from annotations.editing.household_classes import add_household
+from annotations.models import Duty, EntityClass
 from annotations.web.description.class_forms import EntityClassForm
 from annotations.web.editing.noun_rest import NounViewSet
 from annotations.web.rest.form_fields import FormFields
+from annotations.web.rest.permissions import ApiRequest
 
 
 class EntityClassSerializer(serializers.ModelSerializer[EntityClass]):
@@ -37,10 +44,18 @@ class NewEntityClass(EntityClassChange):
 
 
 class EntityClassViewSet(NounViewSet):
-    """The classes of the entities. Those that every world has stay, and those that something uses."""
+    """The classes of the entities. Those that something uses stay."""
 
     noun_form = EntityClassForm
     serializer_class = EntityClassSerializer
     new_serializer = NewEntityClass
     change_serializer = EntityClassChange
     sorts = {"position": "position", "token": "token", "id": "pk"}
+    duties = {**NounViewSet.duties, "household": Duty.ANNOTATE}
+
+    @extend_schema(request=None, responses={200: EntityClassSerializer(many=True)})
+    @action(detail=False, methods=["post"])
+    def household(self, request: ApiRequest, **kwargs: Any) -> Response:
+        """Adds those of a household, which GPSRCmdGen has, where they are missing."""
+        add_household(self.world, request.user)
+        return Response(self.get_serializer(self.rows(), many=True).data)

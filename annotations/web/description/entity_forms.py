@@ -28,8 +28,13 @@ from annotations.web.forms import sentence_of
 
 def class_field(world: World) -> forms.ChoiceField:
     """Return the field for the class of an entity, with those that the world has."""
-    choices = [(name, name) for name in classes_of(world).tokens]
-    return forms.ChoiceField(label="Class", choices=choices)
+    tokens = classes_of(world).tokens
+    there = f"there are {', '.join(tokens)}" if tokens else "there is none yet"
+    said = f"There is no class “%(value)s”; {there}. Add it to the classes of entities first."
+    choices = [(name, name) for name in tokens]
+    return forms.ChoiceField(
+        label="Class", choices=choices, error_messages={"invalid_choice": said}
+    )
 
 
 class LinesField(forms.CharField):

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from annotations.models import Entity, World
+from django.http import HttpResponse
+from django.shortcuts import render
+
+from annotations.models import Entity, EntityClass, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import PageRequest, WorldRequest
 from annotations.rows.from_rows import classes_of
@@ -43,7 +46,10 @@ class EntityNoun(Noun):
         }
 
     def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
-        return asked_class(request)
+        return asked_class(request, world)
+
+    def missing(self, request: WorldRequest, world: World) -> HttpResponse | None:
+        return needs_class(request, world)
 
 
 ENTITIES = EntityNoun()
@@ -54,5 +60,14 @@ def counted_classes(world: World, counts: Mapping[str, int]) -> dict[str, int]:
     return {name: counts[name] for name in classes_of(world).tokens if name in counts}
 
 
-def asked_class(request: PageRequest) -> dict[str, str]:
-    return {"entity_class": request.GET.get("entity_class", "object")}
+def asked_class(request: PageRequest, world: World) -> dict[str, str]:
+    """Return the class that the address names, or else the first one."""
+    return {"entity_class": request.GET.get("entity_class") or next(iter(classes_of(world).tokens))}
+
+
+def needs_class(request: PageRequest, world: World) -> HttpResponse | None:
+    """Return the page that offers classes where a world has none, so that no entity can be added; None elsewhere."""
+    if world.entity_classes.exists():
+        return None
+    context = {"missing": EntityClass.objects.missing_of_household(world)}
+    return render(request, "annotations/description/entity_needs_class.html", context)

@@ -17,14 +17,16 @@ from annotations.web.description.entity_forms import (
     EntitiesForm,
     ontology_in,
 )
-from annotations.web.description.entity_noun import asked_class
+from annotations.web.description.entity_noun import asked_class, needs_class
 from annotations.web.forms import posted
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="add entities")
 def entities_new(request: WorldRequest, world: World) -> HttpResponse:
     """Preview what the pasted lines would add. With ``add``, add all of them or none."""
-    form = EntitiesForm(world, posted(request), initial=asked_class(request))
+    if lacking := needs_class(request, world):
+        return lacking
+    form = EntitiesForm(world, posted(request), initial=asked_class(request, world))
     context: dict[str, Any] = {"form": form}
     if request.method == "POST" and form.is_valid():
         additions = form.additions

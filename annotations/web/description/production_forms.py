@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from django import forms
+from django.db import transaction
 
+from annotations.editing.task_categories import begin_grammar
 from annotations.generation.production_check import (
     EXPANSION_FIELD,
     CheckedProduction,
@@ -14,17 +16,22 @@ from annotations.generation.production_check import (
 )
 from annotations.language.corpus import require_nonterminal
 from annotations.language.texts import MAX_NONTERMINAL, MAX_PATTERN, LanguageError, Problem
-from annotations.models import Production, TaskCategory, World
-from annotations.rows.composition import own_category, split_entry
+from annotations.models import Editable, Grammar, Production, User, World
+from annotations.rows.composition import (
+    RULES,
+    categories_to_write_for,
+    new_category,
+    own_category,
+    plain_name,
+    require_set_name,
+    rule_files,
+    set_called,
+    split_entry,
+)
 from annotations.web.editing.noun_forms import NounForm
-from annotations.web.forms import choice_field, sentence_of
+from annotations.web.forms import sentence_of
 
-
-def sources_of(world: World) -> list[str]:
-    """Return the names of the files that the world's grammar comes from."""
-    categories = TaskCategory.objects.filter(grammar__world=world)
-    entries = (entry for category in categories for entry in category.rule_sources)
-    return list(dict.fromkeys(split_entry(entry)[0] for entry in entries))
+MAX_SOURCE = 200
 
 
 class ProductionForm(NounForm):
@@ -47,15 +54,17 @@ class ProductionForm(NounForm):
             attrs={"rows": 2, "data-editor": "pattern", "placeholder": "go to the {room}"}
         ),
     )
-    source = forms.ChoiceField(label="File")
+    source = forms.CharField(label="Set", max_length=MAX_SOURCE, required=False)
 
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
         self.checked: CheckedProduction | None = None
-        sources = sources_of(world)
-        if self.row and self.row.source not in sources:
-            sources.append(self.row.source)
-        choice_field(self, "source").choices = [(name, name) for name in sources]
+        self.categories = categories_to_write_for(world)
+        self.sets = rule_files(self.categories)
+        if self.row and self.row.source not in self.sets:
+            self.sets.append(self.row.source)
+        several = forms.Select(choices=[(name, plain_name(name)) for name in self.sets])
+        self.fields["source"].widget = several if len(self.sets) > 1 else forms.HiddenInput()
 
     def clean_nonterminal(self) -> str:
         name = str(self.cleaned_data["nonterminal"]).removeprefix("$")
@@ -65,6 +74,32 @@ class ProductionForm(NounForm):
             except LanguageError as error:
                 raise forms.ValidationError(sentence_of(error)) from error
         return name
+
+    def clean_source(self) -> str:
+        """Return the set: that of the only task category where none is sent, the name of the first in a new world."""
+        source = set_called(str(self.cleaned_data["source"]).strip(), RULES, self.sets)
+        is_named = source != RULES
+        if self.row is not None or source in self.sets:
+            return source
+        if not is_named and len(self.categories) == 1:
+            return split_entry(self.categories[0].rule_sources[-1])[0]
+        if is_named and self.begins_grammar:
+            try:
+                require_set_name(plain_name(source))
+            except LanguageError as error:
+                raise forms.ValidationError(sentence_of(error)) from error
+            self.categories = [new_category(None, plain_name(source))]
+            return source
+        said = f"There is no set “{plain_name(source)}”." if is_named else "There are several sets."
+        names = ", ".join(map(plain_name, self.sets))
+        raise forms.ValidationError(
+            f"{said} Choose of: {names}. A new task category begins a new set."
+        )
+
+    @property
+    def begins_grammar(self) -> bool:
+        """Whether the world has no task category yet, so that its first production makes one."""
+        return self.categories[0].pk is None
 
     def clean_expansion(self) -> str:
         return " ".join(self.cleaned_data["expansion"].split())
@@ -80,8 +115,13 @@ class ProductionForm(NounForm):
             )
         return cleaned
 
+    def store(self, by: User, once: str = "") -> Editable:
+        with transaction.atomic():
+            begin_grammar(self.world, self.categories[0].name, by)
+            return super().store(by, once)
+
     def unsaved(self) -> Production:
-        sent, grammar = self.cleaned_data, self.world.grammar
+        sent, grammar = self.cleaned_data, Grammar.objects.get(world=self.world)
         return Production(
             grammar=grammar,
             **{name: sent[name] for name in (*self.fixed, *self.edited)},

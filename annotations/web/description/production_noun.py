@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any
 
-from django.http import HttpResponse
-from django.shortcuts import render
 from django.urls import reverse
 
 from annotations.generation.production_check import (
@@ -15,17 +13,16 @@ from annotations.generation.production_check import (
     check_production,
     consequences_of_production,
 )
+from annotations.language.grammar import ROOT
 from annotations.language.texts import MAX_PATTERN
 from annotations.models import Production, SemanticTemplate, World
 from annotations.models.description import ProblemSubject
 from annotations.people.access import WorldRequest
 from annotations.showing.listing import Listing, Sort
 from annotations.web.description.description_filters import ProductionFilters
-from annotations.web.description.production_forms import ProductionForm, sources_of
-from annotations.web.description.template_forms import has_grammar
+from annotations.web.description.production_forms import ProductionForm
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.nouns import Noun
-from annotations.web.forms import choice_field
 
 
 class ProductionNoun(Noun):
@@ -51,8 +48,9 @@ class ProductionNoun(Noun):
         self, request: WorldRequest, world: World, row: Any | None, form: ProductionForm
     ) -> Mapping[str, Any]:
         if row is None:
-            source = request.GET.get("source", "") or sources_of(world)[0]
-            return {"checked": form.checked, **_completion(world, source)}
+            source = form["source"].value() or form.sets[-1]
+            is_first = not Production.objects.filter(grammar__world=world).exists()
+            return {"checked": form.checked, "is_first": is_first, **_completion(world, source)}
         lines = Production.objects.filter(grammar__world=world, nonterminal=row.nonterminal)
         templates = SemanticTemplate.objects.filter(grammar__world=world)
         return {
@@ -63,12 +61,12 @@ class ProductionNoun(Noun):
         }
 
     def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
-        return {name: request.GET.get(name, "") for name in ("nonterminal", "source")}
-
-    def missing(self, request: WorldRequest, world: World) -> HttpResponse | None:
-        if has_grammar(world):
-            return None
-        return render(request, "annotations/description/production_needs_grammar.html")
+        """Begin with what the address says, or else with ``$Main`` where no set has it yet."""
+        asked = {name: request.GET.get(name, "") for name in ("nonterminal", "source")}
+        lines = Production.objects.filter(grammar__world=world)
+        if not asked["nonterminal"] and not lines.filter(nonterminal=ROOT).exists():
+            asked["nonterminal"] = ROOT
+        return asked
 
     def merging(self, world: World, row: Any) -> Mapping[str, Any]:
         return {"check_url": f"{reverse('production_check', args=[world.name])}?row={row.pk}"}
@@ -91,16 +89,15 @@ PRODUCTIONS = ProductionNoun()
 def edit_typed(form: ProductionForm) -> ProductionEdit | None:
     """Return the production as typed, or None while a field is empty or invalid."""
     form.is_valid()
-    names = ("source", "nonterminal", "expansion")
-    source, nonterminal, expansion = (
-        form.cleaned_data.get(name) or form[name].value() or "" for name in names
+    nonterminal, expansion = (
+        form.cleaned_data.get(name) or form[name].value() or ""
+        for name in ("nonterminal", "expansion")
     )
-    if not expansion.strip() or not choice_field(form, "source").valid_value(source):
+    if not expansion.strip() or {"nonterminal", "source"} & form.errors.keys():
         return None
-    if len(expansion) > MAX_PATTERN or "\0" in f"{source}{nonterminal}{expansion}":
+    if len(expansion) > MAX_PATTERN or "\0" in f"{nonterminal}{expansion}":
         return None
-    if "nonterminal" in form.errors:
-        return None
+    source = form.cleaned_data["source"]
     return ProductionEdit(form.world, source, nonterminal, expansion, form.row)
 
 

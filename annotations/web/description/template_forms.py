@@ -6,7 +6,10 @@ import copy
 from typing import Any
 
 from django import forms
+from django.db import transaction
 
+from annotations.editing.edits import add
+from annotations.editing.task_categories import begin_grammar
 from annotations.generation.template_check import CheckedTemplate, check_template
 from annotations.generation.world_consequences import (
     TemplateChange,
@@ -15,8 +18,15 @@ from annotations.generation.world_consequences import (
 )
 from annotations.language.forms import plain_marks
 from annotations.language.texts import MAX_FORM, MAX_PATTERN
-from annotations.models import Production, SemanticTemplate, TaskCategory, World
+from annotations.models import (
+    Production,
+    SemanticTemplate,
+    TaskCategory,
+    User,
+    World,
+)
 from annotations.models.description import TemplateStatus, template_status_choices
+from annotations.rows.composition import FIRST_CATEGORY
 from annotations.web.editing.noun_forms import NounForm
 from annotations.web.forms import row_field
 
@@ -24,7 +34,8 @@ from annotations.web.forms import row_field
 class TemplateForm(NounForm):
     """A pattern and its logical form. An error of the checker keeps a template from being ready.
 
-    ``checked`` is what the checker says, once the form has been validated and holds both sides.
+    ``checked`` is what the checker says, once the form has been validated and holds both sides. In a world without
+    task categories the first template makes one, called ``first_category``.
     """
 
     model = SemanticTemplate
@@ -47,12 +58,18 @@ class TemplateForm(NounForm):
         help_text="Only ready templates make commands.",
     )
 
+    first_category = FIRST_CATEGORY
+
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
         self.checked: CheckedTemplate | None = None
         row_field(self, "task_category").queryset = TaskCategory.objects.filter(
             grammar__world=world
         )
+        n_categories = TaskCategory.objects.filter(grammar__world=world).count()
+        if n_categories < 2 and self.row is None:  # there is nothing to choose
+            self.fields["task_category"].required = False
+            self.fields["task_category"].widget = forms.HiddenInput()
         if self.row is not None:  # it stays where it is
             self.fields["task_category"].required = False
             self.fields[
@@ -74,8 +91,15 @@ class TemplateForm(NounForm):
         moved = self.row.moved_to(self.cleaned_data["task_category"]) if self.row else {}
         return {**super().values, "problems": problems, **moved}
 
+    def store(self, by: User, once: str = "") -> SemanticTemplate:
+        with transaction.atomic():
+            begin_grammar(self.world, self.first_category, by)
+            return add(self.unsaved(), by, once)
+
     def unsaved(self) -> SemanticTemplate:
-        return SemanticTemplate.for_category(self.cleaned_data["task_category"], **self.values)
+        category = self.chosen_category
+        assert category is not None  # ``store`` has made one
+        return SemanticTemplate.for_category(category, **self.values)
 
     def clean_form(self) -> str:
         return plain_marks(self.cleaned_data["form"])
@@ -106,11 +130,6 @@ class TemplateForm(NounForm):
             chosen or self.initial.get("task_category") or field.queryset.last()
         )
         return found
-
-
-def has_grammar(world: World) -> bool:
-    """Return whether the world has task categories that a template could belong to."""
-    return TaskCategory.objects.filter(grammar__world=world).exists()
 
 
 def example_template(world: World) -> dict[str, str]:

@@ -55,7 +55,6 @@ from annotations.web.description.template_forms import (
     TemplateForm,
     change_to,
     consequences_of_form,
-    has_grammar,
 )
 from annotations.web.editing.consequence_presentation import groups_of
 from annotations.web.editing.merge_pages import merge_page, save_edit
@@ -80,7 +79,6 @@ def templates(request: WorldRequest, world: World) -> HttpResponse:
     listing = Listing(request, TemplateFilters, rows.annotate(n_commands=Count("commands")), SORTS)
     context = {
         "listing": listing,
-        "has_grammar": listing.total or has_grammar(world),
         "problems": problems_beside_rows(world),
     }
     return render_list(request, "annotations/description/templates.html", context)
@@ -129,14 +127,13 @@ def has_shared_slot(row: SemanticTemplate) -> bool:
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="new template")
 def template_new(request: WorldRequest, world: World) -> HttpResponse:
     """Write a new template."""
-    if not has_grammar(world):
-        return render(request, "annotations/description/template_needs_grammar.html")
     suggested = suggestions_for_command(request, world)
     form = TemplateForm(world, None, posted(request), initial=suggested.get("initial"))
     if request.method == "POST" and form.is_valid():
-        category = form.cleaned_data["task_category"]
-        expected = consequences(world, change_to(None, category, form.values))
-        row = add(form.unsaved(), request.user, form.cleaned_data["once"])
+        category = form.chosen_category
+        change = change_to(None, category, form.values) if category else None
+        expected = consequences(world, change) if change else WorldConsequences()
+        row = form.store(request.user, form.cleaned_data["once"])
         tell_saved(request, row, "Saved.", expected)
         return redirect(page_after(request, row))
     checked = form.checked or checked_of(world, form)

@@ -9,12 +9,14 @@ import django_filters
 from django.db.models import QuerySet
 from rest_framework import serializers
 
-from annotations.language.texts import Refusal
+from annotations.language.texts import LanguageError, Refusal
 from annotations.models import SemanticTemplate, TaskCategory, World
 from annotations.models.description import TemplateStatus, template_status_choices
+from annotations.rows.composition import require_set_name
 from annotations.web.description.description_filters import TemplateFilters, with_counts
 from annotations.web.description.template_forms import TemplateForm
 from annotations.web.editing.noun_rest import NounRoute, NounViewSet
+from annotations.web.forms import sentence_of
 from annotations.web.rest.fields import LineField
 from annotations.web.rest.form_fields import FormFields
 from annotations.web.rest.problem_details import ProblemItemSerializer
@@ -35,9 +37,12 @@ class TemplateSerializer(serializers.ModelSerializer[SemanticTemplate]):
 
 
 class TemplateChange(FormFields):
-    """The form in any notation. Only ready templates make commands."""
+    """The form in any notation. Only ready templates make commands.
 
-    task_category = LineField(max_length=60)
+    ``task_category`` is the only one by default. In a world without any it names the first one.
+    """
+
+    task_category = LineField(max_length=60, required=False)
     status = serializers.ChoiceField(
         choices=template_status_choices(), default=TemplateStatus.READY
     )
@@ -64,11 +69,22 @@ def category_called(world: World, name: str) -> TaskCategory:
     categories = TaskCategory.objects.filter(grammar__world=world)
     category = categories.filter(name=name).first()
     if category is None:
-        names = ", ".join(categories.values_list("name", flat=True)) or "none"
-        said = f"There is no task category “{name}”; there are: {names}."
+        names = ", ".join(categories.values_list("name", flat=True))
+        said = f"There is no task category “{name}”; there are: {names}. POST it to task-categories/ first."
         problem = {"field": "task_category", "message": said}
         raise Refusal(said, "no_such_task_category", problems=[problem])
     return category
+
+
+def name_of_first(name: str) -> str:
+    """Return ``name`` if a world's first task category can have it. Raises Refusal."""
+    try:
+        require_set_name(name)
+    except LanguageError as error:
+        said = sentence_of(error)
+        problem = {"field": "task_category", "message": said}
+        raise Refusal(said, "no_such_task_category", problems=[problem]) from error
+    return name
 
 
 class TemplateRoute(NounRoute):
@@ -79,11 +95,16 @@ class TemplateRoute(NounRoute):
 
     def form_of(self, row: SemanticTemplate | None, sent: Mapping[str, Any]) -> TemplateForm:
         given = {**(TemplateForm.shown(row) if row else {}), **sent}
-        if "task_category" in sent:
-            given["task_category"] = category_called(self.world, sent["task_category"])
+        name = sent.get("task_category")
+        has_any = TaskCategory.objects.filter(grammar__world=self.world).exists()
+        if name is not None and has_any:
+            given["task_category"] = category_called(self.world, name)
         category = given.get("task_category")
-        given["task_category"] = category.pk if category else ""
-        return TemplateForm(self.world, row, given)
+        given["task_category"] = category.pk if has_any and category else ""
+        form = TemplateForm(self.world, row, given)
+        if name is not None and not has_any:
+            form.first_category = name_of_first(name)
+        return form
 
 
 class TemplateViewSet(TemplateRoute, NounViewSet):

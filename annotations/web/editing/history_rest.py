@@ -30,6 +30,7 @@ from annotations.web.rest.routes import Route, RowRoute, RowsRoute
 # Kind of row → the serializer of its own routes. By path: the rooms of the rows import this one.
 SERIALIZERS = {
     "template": "annotations.web.description.template_rest.TemplateSerializer",
+    "task_category": "annotations.web.description.category_rest.TaskCategorySerializer",
     "production": "annotations.web.description.production_rest.ProductionSerializer",
     "entity": "annotations.web.description.entity_rest.EntitySerializer",
     "entity_class": "annotations.web.description.class_rest.EntityClassSerializer",

@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 
 from django import forms
 
+from annotations.editing.edits import add
 from annotations.editing.once_keys import new_key
 from annotations.language.texts import Problem
-from annotations.models import Editable, World
+from annotations.models import Editable, User, World
 
 
 class NounForm(forms.Form):
@@ -64,6 +65,10 @@ class NounForm(forms.Form):
         model: Any = self.model
         row: Editable = model(world=self.world, **fixed, **self.values)
         return row
+
+    def store(self, by: User, once: str = "") -> Editable:
+        """Store the new row that the valid form describes, as ``add`` does."""
+        return add(self.unsaved(), by, once)
 
     @property
     def repeated(self) -> str:

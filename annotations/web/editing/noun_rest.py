@@ -10,7 +10,7 @@ from django.db.models import QuerySet
 from rest_framework.response import Response
 from rest_framework.serializers import BaseSerializer
 
-from annotations.editing.edits import add, change, delete
+from annotations.editing.edits import change, delete
 from annotations.language.texts import Refusal
 from annotations.models import Duty, Editable
 from annotations.rows.row_kinds import kind_of_model
@@ -69,7 +69,7 @@ class NounViewSet(NounRoute, RowsViewSet):
         """Adds one."""
         form = self.valid_form(None, self.read(self.new_serializer))
         problems = form.remarks
-        row = add(form.unsaved(), request.user, slot_of(request))
+        row = form.store(request.user, slot_of(request))
         response = self._written(row, problems, HTTPStatus.CREATED)
         response["Location"] = request.build_absolute_uri(f"{request.path}{row.pk}/")
         return response

@@ -17,7 +17,7 @@ from django.shortcuts import redirect, render
 from django.urls import URLPattern, path
 from django_filters import FilterSet
 
-from annotations.editing.edits import Overtaken, add
+from annotations.editing.edits import Overtaken
 from annotations.editing.once_keys import made_before
 from annotations.language.texts import Problem
 from annotations.models import Duty, World
@@ -153,7 +153,7 @@ class Noun:
             if request.method == "POST" and form.is_valid() and self._is_new(request, form):
                 remarks = form.remarks
                 try:
-                    row = add(form.unsaved(), request.user, form.cleaned_data["once"])
+                    row = form.store(request.user, form.cleaned_data["once"])
                 except ValidationError as error:
                     form.add_error(form.key, form.repeated or error.messages)
                 else:

@@ -8,7 +8,7 @@ from django import forms
 
 from annotations.editing.world_rename import TouchedRows, touched_by
 from annotations.language.texts import MAX_ENTITY, LanguageError
-from annotations.models import Editable, Entity, Primitive, Production
+from annotations.models import Editable, Entity, Primitive, Production, TaskCategory
 from annotations.web.forms import choice_field, sentence_of
 
 
@@ -16,7 +16,7 @@ def names_of(row: Editable) -> list[str]:
     """Return what ``row`` is called: one name, or the text and the aliases of an entity."""
     if isinstance(row, Entity):
         return [row.text, *row.aliases]
-    if isinstance(row, Primitive):
+    if isinstance(row, Primitive | TaskCategory):
         return [row.name]
     return [row.nonterminal if isinstance(row, Production) else str(row)]
 

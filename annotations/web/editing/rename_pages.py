@@ -16,7 +16,7 @@ from annotations.rows.row_kinds import EditableKind
 from annotations.web.editing.kinds_of_rows import kind_named
 from annotations.web.editing.rename_forms import RenameForm, names_of
 
-WHAT = {"production": "nonterminal"}
+WHAT = {"production": "nonterminal", "task_category": "task category"}
 
 
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="rename everywhere")

@@ -20,7 +20,7 @@ from annotations.people.members import add_roles
 def start_choices() -> list[tuple[str, str]]:
     """Return what a new world may begin with, and what that is: nothing, or a world that comes with this project."""
     shipped = ((each.name, each.description) for each in SHIPPED_WORLDS.values())
-    return [("", "You import the files of a command generator next."), *shipped]
+    return [("", "You describe it by hand, or import the files of a command generator."), *shipped]
 
 
 DESCRIBES = "describe the world"  # the words of the audit log
@@ -141,6 +141,11 @@ class NewWorldForm(WorldForm):
         widget=forms.RadioSelect,
         initial="",
     )
+
+    def create(self, by: User) -> World | None:
+        """Create the world; one that starts with nothing has no classes of entities either."""
+        self.instance.is_bare = not self.cleaned_data["starts_with"]
+        return super().create(by)
 
     def load(self, created: World, by: User) -> Job | None:
         """Queue the loading of what ``created`` starts with; None where that is nothing."""

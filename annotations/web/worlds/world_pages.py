@@ -60,12 +60,12 @@ class NameForm(forms.Form):
 
 @site_view(READ_AND_WRITE, does="create a world")
 def world_new(request: PageRequest) -> HttpResponse:
-    """Create a world, empty or with what comes with this project; files are imported into an empty one next."""
+    """Create a world, empty or with what comes with this project."""
     form = NewWorldForm(posted(request))
     if form.is_bound and form.is_valid() and (created := form.create(request.user)):
         if (job := form.load(created, request.user)) is not None:
             return redirect("job", pk=job.pk)
-        return redirect("import", world=created.name)
+        return redirect("world", world=created.name)
     return render(request, "annotations/worlds/world_new.html", {"form": form})
 
 

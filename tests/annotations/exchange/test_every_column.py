@@ -74,7 +74,7 @@ FORM = ("( go )", "( wave )")
 MEANT: dict[str, tuple[Any, Any]] = {
     **{f"{table}.{name}": FORM for table, names in FORMS.items() for name in names},
     "entity_classes.token": ("pose", "tool"),
-    "entity_class": ("object", "object"),
+    "entity_class": ("pose", "tool"),
     "task_category": ("cat1", "cat2"),
     "task_categories.name": ("cat1", "cat2"),
     **{f"{table}.source": ("é.txt", "b.txt") for table in ("productions", "templates", "entities")},
@@ -87,7 +87,7 @@ MEANT: dict[str, tuple[Any, Any]] = {
     "comments.kind": ("template", "template"),
     "aliases": (["thé"], []),
     "attributes": ({"colour": "grün"}, {}),
-    "signatures": ([["object"]], [[]]),
+    "signatures": ([["pose"]], [[]]),
     "problems": ([], []),
     "spans": ([[0, 2, "object", "tea"]], []),
     "entities": ([{"text": "tea", "aliases": ["thé"], "is_described": True}], []),

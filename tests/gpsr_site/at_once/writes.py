@@ -32,6 +32,7 @@ CHANGES: dict[tuple[str, str], Body] = {
     ("api:entity-detail", "PATCH"): lambda *each: {"aliases": [different(*each)]},
     ("api:entity-class-detail", "PATCH"): lambda *each: {"said": different(*each)},
     ("api:predicate-detail", "PATCH"): lambda *each: {"gloss": different(*each)},
+    ("api:task-category-detail", "PATCH"): lambda *each: {"rule_sources": [different(*each)]},
     ("api:recipe-detail", "PATCH"): lambda *each: {
         "text": f'go(destination) -> say("{different(*each)}")'
     },
@@ -67,6 +68,7 @@ CHANGES: dict[tuple[str, str], Body] = {
                 "entity-detail",
                 "entity-class-detail",
                 "predicate-detail",
+                "task-category-detail",
                 "recipe-detail",
                 "primitive-detail",
                 "production-detail",
@@ -98,6 +100,7 @@ NAMES: dict[str, dict[str, Any]] = {
         **{"said": "garment", "hue": 60},
     },
     "api:predicate-list": {"name": "shines", "kind": "description", "signatures": [["object"]]},
+    "api:task-category-list": {"name": "baking"},
     "api:recipe-list": {"text": "dance() -> greet(operator)"},
     "api:primitive-list": {"text": "dance()"},
     "api:worlds": {"name": "attic"},
@@ -113,6 +116,8 @@ NAMES: dict[str, dict[str, Any]] = {
 NAMELESS = {
     *(
         "production-list",
+        "task-category-order",
+        "entity-class-household",
         "template-list",
         "comments",
         "utterance-list",

@@ -27,7 +27,8 @@ READABLE = (
         "recipe-book",
         "shipped-books",
         "proposed-recipes",
-        "task-categories",
+        "task-category-list",
+        "task-category-detail",
         "production-list",
     ),
     *(
@@ -106,6 +107,7 @@ ADDED_BY_ANNOTATORS = (
     "predicate-list",
     "recipe-list",
     "primitive-list",
+    "task-category-list",
     "production-list",
     "template-list",
     "utterance-list",
@@ -117,6 +119,7 @@ CHANGED_BY_ANNOTATORS = (
     "predicate-detail",
     "recipe-detail",
     "primitive-detail",
+    "task-category-detail",
     "production-detail",
     "template-detail",
 )
@@ -216,6 +219,8 @@ API_POLICY = [
     Rule("api:utterance-detail", *annotators(NO_VERSION), method="delete"),
     Rule("api:history", *annotators(NO_JSON), method="post"),
     Rule("api:rename", *annotators(NO_VERSION), method="post"),
+    Rule("api:entity-class-household", *annotators(YES), method="post"),
+    Rule("api:task-category-order", *annotators(NO_JSON), method="post"),
     *(
         Rule(f"api:{name}", *admins(400), method="post")
         for name in ("import", "import-competition", "import-pairs", "campaign-results")

@@ -24,7 +24,10 @@ UNSAVED = NoRoute("It keeps what somebody has typed and not saved, for the next 
 PEOPLE_ALONE = NoRoute(
     "It is for people without an account; what a program writes comes by a file."
 )
-NOUNS = ("template", "entity", "entity_class", "predicate", "production", "recipe", "primitive")
+NOUNS = (
+    *("template", "entity", "entity_class", "predicate", "production", "recipe", "primitive"),
+    "task_category",
+)
 
 PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # One's account
@@ -76,6 +79,8 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     # What annotators write, and what is said of it before it is stored
     **{noun: f"patch {noun.replace('_', '-')}-detail" for noun in NOUNS},
     **{f"{noun}_new": f"post {noun.replace('_', '-')}-list" for noun in NOUNS},
+    "classes_of_household": "post entity-class-household",
+    "task_categories": "post task-category-order",
     "entities_new": "post entity-list",
     "location_rooms": "patch entity-detail",
     "recipe_preview": "post check-recipe",
@@ -93,6 +98,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "template_suggestions": "post suggestions",
     "delete_row": "delete entity-detail, delete predicate-detail, delete production-detail, "
     "delete entity-class-detail, delete recipe-detail, delete primitive-detail, "
+    "delete task-category-detail, "
     "delete template-detail, delete paraphrase-detail, delete utterance-detail",
     "history": "post history",
     "rename": "post rename",
@@ -200,7 +206,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "get proposed-recipes",
     "predicates": "get predicate-list",
     "grammar": "get production-list",
-    "coverage": "get task-categories",
+    "coverage": "get task-category-list",
     "uncovered": "get uncovered",
     **dict.fromkeys(("unmatched", "outside_grammar"), "get template-list"),
     "conflicts": "get conflicts",

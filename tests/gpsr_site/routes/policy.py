@@ -90,6 +90,7 @@ POLICY = [
             "ontology",
             "entity",
             "entity_classes",
+            "task_categories",
             "class_colours",
             "recipes",
             "predicates",
@@ -183,17 +184,21 @@ POLICY = [
     Rule("entity_class", *MEMBERS),
     Rule("entity_class", *ANNOTATORS, method="post"),
     Rule("entity_class_new", *ANNOTATORS),
+    Rule("classes_of_household", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("entity_class_new", *ANNOTATORS, method="post"),
-    *(Rule(name, *MEMBERS) for name in ("recipe", "primitive")),
+    *(Rule(name, *MEMBERS) for name in ("recipe", "primitive", "task_category")),
     *(
         Rule(name, *ANNOTATORS, method="post")
-        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview")
+        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview", "task_category")
     ),
-    *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new")),
-    *(Rule(name, *ANNOTATORS, method="post") for name in ("recipe_new", "primitive_new")),
+    *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new", "task_category_new")),
+    *(
+        Rule(name, *ANNOTATORS, method="post")
+        for name in ("recipe_new", "primitive_new", "task_category_new")
+    ),
     *(
         Rule(name, LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post")
-        for name in ("recipe_book", "recipes_proposed")
+        for name in ("recipe_book", "recipes_proposed", "task_categories")
     ),
     Rule("predicate", *MEMBERS),
     Rule("predicate", *ANNOTATORS, method="post"),

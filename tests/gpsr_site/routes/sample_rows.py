@@ -25,6 +25,7 @@ from annotations.models import (
 )
 from annotations.models.people import digest_of
 from annotations.models.worlds import Role
+from annotations.rows.composition import new_category
 from parser_service.models import Dialogue, OfferedEntity, Promotion, PromotionState, Slice
 from parser_service.reviews.world_categories import ensure_categories
 from parser_service.serving.entity_offers import offer
@@ -187,6 +188,18 @@ def primitive(sample: SampleWorld) -> Model:
     """Return a primitive that no recipe uses, so that it can be deleted."""
     values = {"text": "dance()", "position": 1_000}
     return sample.world.primitives.get_or_create(name="dance", defaults=values)[0]
+
+
+def task_category(sample: SampleWorld) -> Model:
+    """Return a task category without productions and templates, so that it can be deleted."""
+    category = new_category(sample.world.grammar, "watering")
+    values = {
+        **{name: getattr(category, name) for name in ("rule_sources", "template_sources")},
+        "position": 1_000,
+    }
+    return sample.world.grammar.task_categories.get_or_create(name=category.name, defaults=values)[
+        0
+    ]
 
 
 def predicate(sample: SampleWorld) -> Model:

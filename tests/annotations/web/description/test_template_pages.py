@@ -173,13 +173,6 @@ def test_a_draft_with_an_error_keeps_what_the_checker_says(sample, new, anna):
     assert (problem["field"], problem["severity"]) == ("form", "error")
 
 
-def test_a_world_without_a_grammar_asks_for_it_first(world, adam, anna):
-    assert 'href="/w/home/import/"' in adam.get("/w/home/templates/new/").content.decode()
-    page = anna.get("/w/home/templates/new/").content.decode()
-    assert '<div class="empty">' in page and 'href="/w/home/import/"' not in page
-    assert "<textarea" not in page
-
-
 def test_the_empty_fields_show_an_example_of_this_world(sample, anna):
     page = anna.get("/w/home/templates/new/").content.decode()
     assert 'placeholder="$vbfind the $object"' in page

@@ -18,9 +18,9 @@ def root(superuser, client):
     return client
 
 
-def test_a_new_world_asks_for_its_files_next(root):
+def test_a_new_world_says_what_to_do_first(root):
     answer = root.post("/worlds/new/", {"name": "laboratory", "description": "Ours."})
-    assert answer.url == "/w/laboratory/import/"
+    assert answer.url == "/w/laboratory/"
     created = World.objects.get()
     assert created.description == "Ours."
     assert admins_of(created) == [answer.wsgi_request.user.username]
