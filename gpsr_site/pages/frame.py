@@ -14,6 +14,7 @@ from django.utils.functional import SimpleLazyObject
 
 from annotations.language.texts import say_count
 from annotations.models import Duty, Notice, World
+from annotations.showing.listing import count_some
 from gpsr_site.overview.counts import LARGE, Counts, counts_of
 from gpsr_site.overview.workers import workers_now
 from gpsr_site.pages.rail import GROUPS, RailEntry, way_to
@@ -59,7 +60,7 @@ def frame(request: HttpRequest) -> dict[str, Any]:
         "worker": SimpleLazyObject(workers_now),
         "closed_notice": unquote(request.COOKIES.get(CLOSED_NOTICE, "")),
         "unread": SimpleLazyObject(
-            lambda: Notice.objects.of(user).unread().count() if user.is_authenticated else 0
+            lambda: count_some(Notice.objects.of(user).unread()) if user.is_authenticated else 0
         ),
         **_frame_of_world(request),
     }

@@ -10,6 +10,7 @@ from django.db.models import Count, OuterRef, QuerySet, Subquery
 
 from annotations.language.corpus import Agreement, measure
 from annotations.models import World
+from annotations.rows.kept import kept
 from parser_service.models import ErrorCategory, Review, TrainingRun
 
 MOST_ITEMS = 5_000  # the newest ones; the bootstrap costs time with each
@@ -34,7 +35,18 @@ class CategoryCount:
 def count_categories(
     world: World, categories: Sequence[ErrorCategory], run: TrainingRun | None = None
 ) -> list[CategoryCount]:
-    """Count the reviews of each category, those of one run or of all runs of the world."""
+    """Count the reviews of each category, those of one run or of all runs of the world; of very many, as of a while
+    ago."""
+    counted = kept(
+        ("reviews", world.pk, run and run.pk),
+        lambda: _count_all(world, run),
+        lambda counts: counts[0].total() + counts[1].total(),
+    )
+    return [CategoryCount(each, *(counts[each.pk] for counts in counted)) for each in categories]
+
+
+def _count_all(world: World, run: TrainingRun | None) -> tuple[Counter[int], ...]:
+    """Return the numbers of ``CategoryCount``, each by category."""
     proposed = _count(_of(world, run, is_proposed=True))
     tags = _of(world, run, is_proposed=False)
     tagged = _count(tags)
@@ -47,10 +59,7 @@ def count_categories(
     for said, given, count in pairs.values_list("said", "category", "count"):
         judged[said] += count
         accepted[said] += count if said == given else 0
-    return [
-        CategoryCount(each, *(counts[each.pk] for counts in (proposed, tagged, accepted, judged)))
-        for each in categories
-    ]
+    return proposed, tagged, accepted, judged
 
 
 def _of(world: World, run: TrainingRun | None, is_proposed: bool) -> QuerySet[Review]:

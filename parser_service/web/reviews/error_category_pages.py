@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from django.contrib import messages
+from django.db.models import Exists, OuterRef
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
@@ -41,8 +42,7 @@ def error_categories(request: WorldRequest, world: World) -> HttpResponse:
             return redirect("error_categories", world=world.name)
     status = 422 if form.errors else 200
     categories = list(ensure_categories(world).values())
-    reviewed = Review.objects.filter(run__in=world.runs.all()).order_by().values("run")
-    runs = world.runs.filter(pk__in=reviewed)
+    runs = world.runs.filter(Exists(Review.objects.filter(run=OuterRef("pk"))))
     run = runs.filter(pk=number_in(request.GET.get("run", ""))).first()
     opening = opening_run(world)
     context = {
