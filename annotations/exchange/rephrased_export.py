@@ -13,7 +13,12 @@ from django.db.models import QuerySet
 
 from annotations.exchange.tables import text_pieces
 from annotations.language.corpus import Part
-from annotations.language.forms import read_form
+from annotations.language.forms import (
+    NAMING,
+    NOUN,
+    PERSON,
+    read_form,
+)
 from annotations.language.plans import (
     Described,
     Named,
@@ -202,7 +207,7 @@ def _entity_of(value: Described) -> str:
     entities = [each for condition in value.conditions for each in condition.values]
     others = [each for each in value.conditions if not each.values]
     first = entities[0] if len(entities) == 1 and len(others) < 2 else None
-    is_only = all(each.predicate in ("person", "is_a", "name") for each in value.conditions)
+    is_only = all(each.predicate in (PERSON, NOUN, NAMING) for each in value.conditions)
     return first.text if isinstance(first, Named) and is_only else ""
 
 

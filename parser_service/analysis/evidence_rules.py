@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from annotations.language.forms import (
+    QUESTION_CLASS,
+    SAYING_CLASS,
     Application,
     Constant,
     Form,
@@ -29,7 +31,7 @@ from parser_service.analysis.structure import CategoryProposal
 Suggestions = Iterator[tuple[CategoryProposal, bool]]
 """What a kind of evidence suggests, and whether it explains the answer by itself."""
 # Their entities are whole sentences, which an utterance need not contain.
-SENTENCES = frozenset({"question", "whattosay"})
+SENTENCES = frozenset((QUESTION_CLASS, SAYING_CLASS))
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,25 @@ NAMING: str = _predicates["naming"]
 PLACING: str = _predicates["placing"]
 # A λ of which one of these is said describes a person.
 PERSON_PREDICATES = frozenset(_predicates["persons"])
+_roles = _meanings["roles"]
+THING_CLASS: str = _roles["thing"]
+KIND_CLASS: str = _roles["kind"]
+PERSON_CLASS: str = _roles["person"]
+PLACE_CLASS: str = _roles["place"]
+ROOM_CLASS: str = _roles["room"]
+QUESTION_CLASS: str = _roles["question"]
+SAYING_CLASS: str = _roles["saying"]
+PERSONAL_CLASSES = frozenset(
+    _predicates["saying_persons"]
+)  # what is of one of these is said of a person
+PERSONAL_WORDS = frozenset(_predicates["personal_words"])
+ATTRIBUTES: dict[str, str] = _meanings["attributes"]  # class → the attribute that a robot needs
+# Predicate and place → the classes that it takes, where nothing declares it.
+TAKEN = {
+    (name, int(place)): frozenset(classes)
+    for name, places in _meanings["taken"].items()
+    for place, classes in places.items()
+}
 PLACE_CLASSES = frozenset(each for each, meaning in _OF_CLASS.items() if meaning == PLACE)
 
 

@@ -8,13 +8,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from annotations.language.forms import EntityClasses
+from annotations.language.forms import (
+    KIND_CLASS,
+    QUESTION_CLASS,
+    THING_CLASS,
+    EntityClasses,
+)
 from annotations.language.texts import looks_plural, places_of, spellings
 from annotations.language.world import Entity, Ontology
 
 _TOKEN = re.compile(r"<\w+>|\w+|[^\w\s]")
 # A grounded question becomes this word; the question itself is only in the note.
-QUESTION_WORD = "question"
+QUESTION_WORD = QUESTION_CLASS
 
 
 class Likeness(IntEnum):
@@ -144,18 +149,18 @@ def readings_of(entity: Entity, classes: EntityClasses) -> Iterator[tuple[str, R
     entity_class, text = entity.entity_class, entity.text
     exact = Reading(Likeness.EXACT, entity_class, text, entity)
     yield text, exact
-    if entity_class == "question":
+    if entity_class == QUESTION_CLASS:
         yield QUESTION_WORD, Reading(Likeness.EXACT, entity_class, QUESTION_WORD, entity)
     for alias in entity.aliases:
         yield alias, Reading(Likeness.ALIAS, entity_class, text, entity)
-    if entity_class == "category":
+    if entity_class == KIND_CLASS:
         singular = entity.attribute("singular") or text
         if singular != text:
-            yield singular, Reading(Likeness.EXACT, "object", singular, entity)
+            yield singular, Reading(Likeness.EXACT, THING_CLASS, singular, entity)
             return
         # A class whose singular nobody has said, or is its plural: "a food" is one of its objects, too.
         for noun in _singulars_of(text):
-            yield noun, Reading(Likeness.MEMBER, "object", noun, entity)
+            yield noun, Reading(Likeness.MEMBER, THING_CLASS, noun, entity)
     for noun in (text, *entity.aliases) if classes.has_plurals(entity_class) else ():
         for spelling in spellings(noun):
             yield spelling, Reading(Likeness.INFLECTED, entity_class, text, entity)

@@ -11,6 +11,11 @@ from random import Random
 from typing import TypeAlias
 
 from annotations.language.forms import (
+    PERSON_CLASS,
+    PLACE_CLASS,
+    QUESTION_CLASS,
+    ROOM_CLASS,
+    THING_CLASS,
     Application,
     Choice,
     Constant,
@@ -153,9 +158,9 @@ class _Speaker:
             return symbol.value if isinstance(symbol, Text) else ""
         if symbol.entity_class:
             self._last = symbol
-            self._last_name = symbol if symbol.kind == "name" else self._last_name
+            self._last_name = symbol if symbol.kind == PERSON_CLASS else self._last_name
         words = self._words(symbol)
-        if symbol.kind == "question":
+        if symbol.kind == QUESTION_CLASS:
             asked = self._drawn[symbol.identity]
             self.notes.append(f"Q: {asked.text} A: {asked.attribute('answer') or ''}".strip())
         if symbol.meta:
@@ -195,15 +200,15 @@ class _Speaker:
         if wildcard.kind == "pron":
             type_ = _PRONOUN_TYPES.get(wildcard.type, wildcard.type)
             return PRONOUNS[self._gender()][type_]
-        if wildcard.kind == "question":
-            return "question"
+        if wildcard.kind == QUESTION_CLASS:
+            return QUESTION_CLASS
         entity = self._drawn[wildcard.identity]
         if not wildcard.obfuscated:
             return entity.text
-        if wildcard.entity_class == "object":
-            return self._ontology.singular(entity.attribute("category") or "object")
-        if wildcard.entity_class == "location":
-            return entity.attribute("room") or "room"
+        if wildcard.entity_class == THING_CLASS:
+            return self._ontology.singular(entity.attribute("category") or THING_CLASS)
+        if wildcard.entity_class == PLACE_CLASS:
+            return entity.attribute("room") or ROOM_CLASS
         said = OBFUSCATED.get(wildcard.entity_class)
         return said or self._ontology.classes.singular(wildcard.entity_class)
 
@@ -215,6 +220,6 @@ class _Speaker:
         if self._last_name is None:
             return "either" if self._last is None else "thing"
         text = self._drawn[self._last_name.identity].text
-        rows = [each for each in self._ontology.of_class("name") if each.text == text]
+        rows = [each for each in self._ontology.of_class(PERSON_CLASS) if each.text == text]
         genders = {(each.attribute("gender") or "female").lower() for each in rows}
         return genders.pop() if len(genders) == 1 and genders <= PRONOUNS.keys() else "either"

@@ -8,6 +8,13 @@ from dataclasses import dataclass
 
 from annotations.language.forms import (
     CONJUNCTION,
+    NAMING,
+    NOUN,
+    PERSON,
+    PERSON_CLASS,
+    PERSONAL_WORDS,
+    THING,
+    THING_CLASS,
     Application,
     Constant,
     Form,
@@ -19,7 +26,6 @@ from annotations.language.texts import DETERMINERS, GOING_WORDS, PERSON_WORDS, T
 SlotPath = tuple[int, ...]
 _WORD = re.compile(r"<\w+>|\w+(?:'\w+)?|[^\w\s]")
 _TOKEN = re.compile(r"<([^\W\d]+?)(\d*)>")
-_OF_A_PERSON = frozenset(("person", "name", "male", "female", "gesture", "is"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +63,11 @@ def context_of(words: Sequence[str], place: int) -> Context:
         cue = "go to"
     # A person or a thing that is not named counts as one of that class.
     kinds = (
-        "name" if word in PERSON_WORDS else "object" if word in THING_WORDS else class_of(word)
+        PERSON_CLASS
+        if word in PERSON_WORDS
+        else THING_CLASS
+        if word in THING_WORDS
+        else class_of(word)
         for word in reversed(before)
     )
     return Context("<>" if class_of(cue) else cue, next(filter(None, kinds), ""))
@@ -72,19 +82,19 @@ def role_of(form: Form, path: SlotPath) -> SlotRole:
         parts = children(form)
         if any(isinstance(each, Application) and _describes(each) for each in parts):
             is_person = any(
-                isinstance(each, Application) and each.predicate in _OF_A_PERSON for each in parts
+                isinstance(each, Application) and each.predicate in PERSONAL_WORDS for each in parts
             )
         if isinstance(form, Application):
             name = str(form.predicate)
             exact.append(f"{name}.{place + 1}")
             if _describes(form):
-                similar = f"{name} of a {'person' if is_person else 'thing'}"
+                similar = f"{name} of a {PERSON if is_person else THING}"
             elif not _joins(form):
                 similar = f"argument {min(place, 1) + 1}"
             if not outermost and not _joins(form):
                 outermost = place + 1
         form = parts[place]
-    if similar.startswith("is_a") or similar.startswith("name"):
+    if similar.startswith((NOUN, NAMING)):
         similar = f"{similar} in argument {outermost}"
     return SlotRole("/".join(exact), similar)
 

@@ -7,6 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
+from annotations.language.forms import (
+    KIND_CLASS,
+    PERSON_CLASS,
+    PLACE_CLASSES,
+    THING_CLASS,
+)
 from annotations.language.grounding.anonymizer import Anonymized, Span
 from annotations.language.grounding.assignment import Mention
 from annotations.language.grounding.roles import Context, context_of, words_of
@@ -33,7 +39,7 @@ _NO_PART = BOUNDARIES | DETERMINERS | VAGUE_WORDS
 _OBJECTS = DETERMINERS | PERSON_WORDS | THING_WORDS | {"me", "us"}  # what follows a verb
 _MOST_MODIFIERS = 2
 _LONGEST = 4  # words of a name that nobody knows
-_ALIKE = (frozenset(("location", "room")), frozenset(("object", "category")))
+_ALIKE = (PLACE_CLASSES, frozenset((THING_CLASS, KIND_CLASS)))
 _NO_NAMES = frozenset((*BOUNDARIES, *DETERMINERS, *PERSON_WORDS, *THING_WORDS))
 
 
@@ -266,9 +272,9 @@ def unknown_phrases(anonymized: Anonymized, ontology: Ontology) -> Mapping[str, 
     places = [phrase for phrase, is_place, _ in found if is_place]
     names = [phrase for phrase, _, is_name in found if is_name]
     things = [phrase for phrase, is_place, is_name in found if not is_place and not is_name]
-    kinds = {"name": names}
-    kinds |= dict.fromkeys(("location", "room"), places)
-    kinds |= dict.fromkeys(("object", "category"), things)
+    kinds = {PERSON_CLASS: names}
+    kinds |= dict.fromkeys(PLACE_CLASSES, places)
+    kinds |= dict.fromkeys((THING_CLASS, KIND_CLASS), things)
     return {"": phrases} | {each: tuple(dict.fromkeys(of)) or phrases for each, of in kinds.items()}
 
 

@@ -16,7 +16,11 @@ from dataclasses import dataclass
 from typing import Protocol
 from xml.etree import ElementTree
 
-from annotations.language.forms import PERSON
+from annotations.language.forms import (
+    NAMING,
+    NOUN,
+    PERSON,
+)
 from annotations.language.plans.plan import (
     Described,
     Named,
@@ -33,7 +37,7 @@ TREE = "Command"
 RESULT = "result"
 OPERATOR = "operator"
 FALLBACK = "step_failed"
-_NAMING = frozenset(("is_a", "name"))  # what gives a thing its noun and a person a name
+_NAMING = frozenset((NOUN, NAMING))  # what gives a thing its noun and a person a name
 _NO_NAME = re.compile(r"[^A-Za-z0-9_]")
 _RESERVED = frozenset(("name", "id", RESULT))
 # The nodes of BehaviorTree.CPP 4.9 and of its predecessors, the tags of its XML, and the name of our tree: an action

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from annotations.language.forms import (
     CONJUNCTION,
+    PLACING,
     Application,
     Constant,
     EntityClasses,
@@ -19,7 +20,7 @@ from annotations.language.plans.plan import Condition, Described, Number, OpenVa
 from annotations.language.world import NAMING, SUPERLATIVES, Predicate, gloss
 
 ValueOf = Callable[[Constant, str, int], Value]
-AT = "at"  # the predicate that says where something is
+AT = PLACING  # the predicate that says where something is
 
 
 @dataclass

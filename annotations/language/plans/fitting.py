@@ -14,7 +14,10 @@ from itertools import combinations
 from math import inf
 
 from annotations.language.forms import (
+    KIND_CLASS,
     PERSON_PREDICATES,
+    PLACE_CLASS,
+    THING_CLASS,
     Constant,
     Form,
     Unknown,
@@ -33,8 +36,8 @@ ELSEWHERE = 4.0  # log odds by which a mention fits another role of the same act
 IMPOSSIBLE = (
     8.0  # log odds by which a place fits better where a thing is, and the thing where the place is
 )
-PLACE = "location"  # and what is alike: what may be of somebody, of something, or a destination
-_THINGS = frozenset(("object", "category"))
+PLACE = PLACE_CLASS  # and what is alike: what may be of somebody, of something, or a destination
+_THINGS = frozenset((THING_CLASS, KIND_CLASS))
 GOAL = "argument 1"
 MOST_MENTIONS = 8  # of one value that are compared
 MOST_SLOTS = 16  # that are compared in pairs

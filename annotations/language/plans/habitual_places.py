@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TypeAlias
 
+from annotations.language.forms import (
+    KIND_CLASS,
+)
 from annotations.language.plans.descriptions import AT
 from annotations.language.plans.lookup import Lookup
 from annotations.language.plans.plan import Described, Named, TaskValue
@@ -24,7 +27,7 @@ def usual_places(ontology: Ontology, lookup: Lookup | None = None) -> UsualPlace
     """
     lookup = lookup or Lookup(ontology, {})
     places: dict[str, Named] = {}
-    for category in ontology.of_class("category"):
+    for category in ontology.of_class(KIND_CLASS):
         text = category.attribute("defaultLocation") or category.attribute("room")
         place, _ = lookup.value(text, AT, 1) if text else (None, False)
         if isinstance(place, Named):

@@ -23,6 +23,9 @@ from itertools import combinations, groupby, pairwise
 from math import isfinite, prod
 from typing import Any, TypeAlias
 
+from annotations.language.forms import (
+    ROOM_CLASS,
+)
 from annotations.language.grounding import NOT_UNDERSTOOD
 from annotations.language.plans.book import RecipeBook
 from annotations.language.plans.plan import (
@@ -954,4 +957,4 @@ def _room(place: Place) -> str:
     """Return the room of a place; a room is its own, and that of others may be unknown."""
     if not isinstance(place, Named):
         return ""
-    return place.text if place.entity_class == "room" else place.attributes.get("room", "")
+    return place.text if place.entity_class == ROOM_CLASS else place.attributes.get("room", "")

@@ -6,6 +6,14 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 
+from annotations.language.forms import (
+    ATTRIBUTES,
+    KIND_CLASS,
+    PLACE_CLASS,
+    QUESTION_CLASS,
+    SAYING_CLASS,
+    TAKEN,
+)
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.plans.plan import Named, Value, Words
 from annotations.language.texts import ANY_OBJECT, KINDS_OF_PLACES, spellings
@@ -13,19 +21,7 @@ from annotations.language.world import Entity, Ontology, Predicate, is_entity_ki
 
 # Words in the place of an entity that name none: any category, any question, where the robot is.
 NEUTRAL_WORDS = frozenset((ANY_OBJECT, QUESTION_WORD, "current"))
-_SPOKEN = frozenset(("whattosay", "question"))
-_PLACES = frozenset(("location", "room"))
-_KINDS: dict[tuple[str, int], frozenset[str]] = {
-    ("is_a", 1): frozenset(("object", "category")),
-    ("name", 1): frozenset(("name",)),
-    ("at", 1): _PLACES,
-    ("go", 0): _PLACES,
-    **{(action, 1): _PLACES for action in ("put", "guide", "follow")},
-}
-# A class and the attribute of its members that a robot needs.
-_ATTRIBUTES = frozenset(
-    (("object", "category"), ("location", "room"), ("name", "gender"), ("question", "answer"))
-)
+_SPOKEN = frozenset((SAYING_CLASS, QUESTION_CLASS))
 # A word for a kind of place of so many letters can begin another one: trash, but not bin.
 LONG = 5
 
@@ -37,10 +33,10 @@ class Lookup:
         self.classes = ontology.classes
         self.class_of_text = ontology.class_of_text
         self._predicates = predicates
-        self._locations = ontology.of_class("location")
+        self._locations = ontology.of_class(PLACE_CLASS)
         self._rows: defaultdict[str, list[Entity]] = defaultdict(list)
         for entity in ontology.entities:
-            singular = entity.attribute("singular") if entity.entity_class == "category" else None
+            singular = entity.attribute("singular") if entity.entity_class == KIND_CLASS else None
             names = {entity.text, *entity.aliases, *([singular] if singular else [])}
             for name in {
                 spelling.casefold() for each in names for spelling in (each, *spellings(each))
@@ -51,7 +47,7 @@ class Lookup:
         """Return the value of a text as an argument, and whether an entity was expected but not found."""
         declared = self._predicates.get(predicate)
         if declared is None or not declared.signatures:
-            kinds = _KINDS.get((predicate, place), frozenset())
+            kinds = TAKEN.get((predicate, place), frozenset())
         else:
             taken = {
                 each.arguments[place] for each in declared.signatures if each.arguments[place:]
@@ -99,7 +95,7 @@ def _named(text: str, rows: Sequence[Entity]) -> Named:
     """Return an entity, with the attributes that all of its rows agree on."""
     entity_class = rows[0].entity_class
     attributes: dict[str, str] = {}
-    for name in (name for each, name in _ATTRIBUTES if each == entity_class):
+    if name := ATTRIBUTES.get(entity_class):
         values = {each.attribute(name) for each in rows}
         value = values.pop() if len(values) == 1 else None
         if value:

@@ -10,8 +10,12 @@ from itertools import chain, count
 from annotations.language.forms import (
     ANTECEDENTS,
     CONJUNCTION,
+    KIND_CLASS,
+    NOUN,
     PERSON,
+    PERSON_CLASS,
     PERSON_PREDICATES,
+    PLACE_CLASSES,
     SEQUENCE,
     THING,
     THINGS,
@@ -68,7 +72,6 @@ from annotations.language.world import (
 )
 
 MOST_STEPS = 50
-_PLACES = frozenset(("location", "room"))
 _PLACE_ARGUMENTS = frozenset(
     ("destination", "source", "where")
 )  # what they describe is no antecedent
@@ -498,12 +501,12 @@ def _kind_of(form: Form, value: Value) -> str:
         each
         for condition in value.conditions
         for each in condition.values
-        if condition.predicate == "is_a" and isinstance(each, Named)
+        if condition.predicate == NOUN and isinstance(each, Named)
     ]
     classes = {each.entity_class for each in of_kind}
-    if classes & _PLACES:
+    if classes & PLACE_CLASSES:
         return ""
-    return THINGS if "category" in classes else THING
+    return THINGS if KIND_CLASS in classes else THING
 
 
 def place_of_argument(action: str, name: str) -> int:
@@ -540,7 +543,7 @@ def argument_name(
     if isinstance(name, str):
         return name
     kind = argument_kind(argument)
-    if kind in _PLACES or entity_class in _PLACES:
+    if kind in PLACE_CLASSES or entity_class in PLACE_CLASSES:
         said = "place"
     elif kind == ArgumentKind.NUMBER:
         said = "number"
@@ -550,7 +553,7 @@ def argument_name(
         predicates = {node.predicate for node in walk(argument) if isinstance(node, Application)}
         said = "person" if predicates & PERSON_PREDICATES else "thing"
     else:
-        said = "name" if "name" in (kind, entity_class) else "text"
+        said = "name" if PERSON_CLASS in (kind, entity_class) else "text"
     return name.get(said) or name.get("") or numbered_name(place)
 
 

@@ -6,7 +6,15 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from annotations.language.forms import PERSON, THING, THINGS, kind_of_class
+from annotations.language.forms import (
+    NAMING,
+    NOUN,
+    PERSON,
+    ROOM_CLASS,
+    THING,
+    THINGS,
+    kind_of_class,
+)
 from annotations.language.grounding import QUESTION_WORD
 from annotations.language.plans.plan import (
     Described,
@@ -162,7 +170,7 @@ class _Clauses:
                     return _PRONOUNS[PERSON if is_person else THING]
                 return self._result(value.step, {} if is_heard else last)
             # "give them to them" says nothing of chips and of people.
-            is_unclear = is_heard and looks_plural(_only(value, "is_a", THING))
+            is_unclear = is_heard and looks_plural(_only(value, NOUN, THING))
             pronouns = {} if is_plural or is_unclear else last
             said = _say_value(value, pronouns, name == new, is_plural)
             return self._other(said, value) if name == new and value is not None else said
@@ -265,7 +273,7 @@ def _preposition(place: TaskValue) -> str:
 
 
 def _is_room(value: TaskValue) -> bool:
-    return isinstance(value, Named) and value.entity_class == "room"
+    return isinstance(value, Named) and value.entity_class == ROOM_CLASS
 
 
 def _pattern(primitive: Primitive, values: Mapping[str, TaskValue]) -> str:
@@ -297,7 +305,7 @@ def _mention(value: TaskValue | None, last: Mapping[str, object]) -> str:
         return ""
     kinds = sorted(kinds_of(value) & _PRONOUNS.keys())
     pronoun = next((_PRONOUNS[each] for each in kinds if last.get(each) == _identity(value)), "")
-    return "them" if pronoun and looks_plural(_only(value, "is_a", THING)) else pronoun
+    return "them" if pronoun and looks_plural(_only(value, NOUN, THING)) else pronoun
 
 
 def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
@@ -323,10 +331,10 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
         return "something"
     if is_plural:
         return _plural_phrase(value.text)
-    name = _only(value, "name", PERSON)
+    name = _only(value, NAMING, PERSON)
     if name:
         return name
-    thing = _only(value, "is_a", THING, THINGS) if is_new else ""
+    thing = _only(value, NOUN, THING, THINGS) if is_new else ""
     if thing and not looks_plural(thing):
         return f"{article(thing)} {thing}"
     return value.text or "it"

@@ -11,6 +11,9 @@ from heapq import nsmallest
 from rapidfuzz.distance import OSA
 from rapidfuzz.process import extractOne
 
+from annotations.language.forms import (
+    PERSON_CLASS,
+)
 from annotations.language.grounding import Anonymized
 from annotations.language.plans.qualifying import Objection
 from annotations.language.texts import ENGLISH_WORDS
@@ -38,7 +41,7 @@ class StoppingWords:
 
     def __init__(self, ontology: Ontology, vocabulary: Collection[str]) -> None:
         self._has_vocabulary = bool(vocabulary)
-        self._has_names = bool(ontology.of_class("name"))
+        self._has_names = bool(ontology.of_class(PERSON_CLASS))
         self._known = {*vocabulary, *ENGLISH_WORDS, *_words_of_entities(ontology)}
         self._stems = {_stem(word) for word in self._known}
 

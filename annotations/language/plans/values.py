@@ -6,7 +6,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from annotations.language.forms import PERSON, PERSON_PREDICATES, THING, kind_of_class
+from annotations.language.forms import (
+    NAMING,
+    NOUN,
+    PERSON,
+    PERSON_PREDICATES,
+    PLACE_CLASSES,
+    THING,
+    kind_of_class,
+)
 from annotations.language.plans.descriptions import AT
 from annotations.language.plans.plan import (
     Condition,
@@ -26,7 +34,6 @@ from annotations.language.plans.plan import (
 PLACE = "place"
 # The kinds of values beside the tokens of entity classes.
 KINDS = frozenset((PERSON, THING, PLACE, "attribute", "text", "number", "result"))
-_PLACES = frozenset(("location", "room"))
 
 
 def kinds_of(value: TaskValue) -> frozenset[str]:
@@ -36,7 +43,7 @@ def kinds_of(value: TaskValue) -> frozenset[str]:
     if isinstance(value, Named):
         is_thing = kind_of_class(value.entity_class) not in ("", PERSON)
         of_class = THING if is_thing else kind_of_class(value.entity_class)
-        place = PLACE if value.entity_class in _PLACES else ""
+        place = PLACE if value.entity_class in PLACE_CLASSES else ""
         return frozenset((value.entity_class, of_class, place)) - {""}
     if isinstance(value, Described):
         return frozenset(("attribute",) if value.of else (_kind_of_described(value),))
@@ -51,10 +58,10 @@ def _kind_of_described(value: Described) -> str:
     if any(each.predicate in PERSON_PREDICATES for each in value.conditions):
         return PERSON
     is_place = any(
-        isinstance(each, Named) and each.entity_class in _PLACES
+        isinstance(each, Named) and each.entity_class in PLACE_CLASSES
         for condition in value.conditions
         for each in condition.values
-        if condition.predicate == "is_a"
+        if condition.predicate == NOUN
     )
     return PLACE if is_place else THING
 
@@ -74,7 +81,9 @@ def said_place(value: TaskValue) -> TaskValue | None:
     values = [each for condition in value.conditions for each in condition.values]
     at = [each for each in value.conditions if each.predicate == AT]
     direct = [each for condition in at for each in condition.values]
-    direct += [each for each in values if isinstance(each, Named) and each.entity_class in _PLACES]
+    direct += [
+        each for each in values if isinstance(each, Named) and each.entity_class in PLACE_CLASSES
+    ]
     if direct:
         return direct[0]
     inner = (said_place(each) for each in values if isinstance(each, Described))
@@ -191,7 +200,7 @@ def ids_in(value: TaskValue) -> Iterator[str]:
 def is_named_person(value: TaskValue) -> bool:
     """Return whether a value describes somebody by a name, so that the same words mean the same person."""
     return isinstance(value, Described) and any(
-        each.predicate == "name" and any(isinstance(name, Named) for name in each.values)
+        each.predicate == NAMING and any(isinstance(name, Named) for name in each.values)
         for each in value.conditions
     )
 

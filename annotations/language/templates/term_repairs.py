@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, islice
 
-from annotations.language.forms import TermSpan, places_in_form, print_symbol, read_spans
+from annotations.language.forms import (
+    NOUN,
+    TermSpan,
+    places_in_form,
+    print_symbol,
+    read_spans,
+)
 from annotations.language.grammar import Grammar
 from annotations.language.templates.candidates import (
     FORM,
@@ -197,7 +203,7 @@ def _wrap(
             for signature in each.signatures
         )
     ]
-    first = sorted(descriptions, key=lambda name: (name != "is_a", name))
+    first = sorted(descriptions, key=lambda name: (name != NOUN, name))
     for number, name in enumerate(first[:MOST_DESCRIPTIONS]):
         whole = f"(λ{variable}:e ({name} {variable} {text}))"
         edit = TextEdit(FORM, argument.start, argument.end, whole)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from annotations.language.forms import ATTRIBUTES, PERSON_CLASS, PLACE_CLASS
 from annotations.language.texts import Position, Problem, warning_at
 from annotations.language.world.entities import Entity, Ontology
 from annotations.language.world.ontology_checks import ontology_problems
@@ -71,5 +72,6 @@ def additions_to(ontology: Ontology, entities: Iterable[Entity]) -> Additions:
 
 def _key(entity: Entity) -> tuple[str, str, str]:
     """Return what may not be there twice: a place once in a room, a name once for each gender."""
-    beside = {"location": "room", "name": "gender"}.get(entity.entity_class, "")
+    is_told_apart = entity.entity_class in (PLACE_CLASS, PERSON_CLASS)
+    beside = ATTRIBUTES[entity.entity_class] if is_told_apart else ""
     return entity.entity_class, entity.text.casefold(), (entity.attribute(beside) or "").casefold()

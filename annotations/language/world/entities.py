@@ -6,7 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from annotations.language.forms import DEFAULT_CLASSES, EntityClasses
+from annotations.language.forms import (
+    DEFAULT_CLASSES,
+    KIND_CLASS,
+    EntityClasses,
+)
 from annotations.language.texts import Position
 
 
@@ -81,7 +85,7 @@ class Ontology:
     @cached_property
     def singulars(self) -> Mapping[str, str]:
         """Category name → its singular, for the categories that declare one."""
-        pairs = ((each.text, each.attribute("singular")) for each in self.of_class("category"))
+        pairs = ((each.text, each.attribute("singular")) for each in self.of_class(KIND_CLASS))
         return {name: singular for name, singular in pairs if singular}
 
     def singular(self, category: str) -> str:

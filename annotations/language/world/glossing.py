@@ -9,6 +9,9 @@ from typing import TypeGuard
 
 from annotations.language.forms import (
     CONJUNCTION,
+    NAMING,
+    PERSON_CLASS,
+    PERSONAL_CLASSES,
     Application,
     Constant,
     EntityClasses,
@@ -30,7 +33,6 @@ from annotations.language.world.gloss_patterns import (
 )
 from annotations.language.world.signatures import ArgumentKind, argument_kind
 
-NAMING = "name"  # the predicate that says how somebody is called
 _RELATIVE = re.compile(rf"_ that is (?=(?:{'|'.join(sorted(RELATIONS))})\b)")
 _A = " a "  # of a pattern, before what may begin with a vowel
 NOT_UNDERSTOOD = "a command that the robot does not understand"
@@ -254,7 +256,7 @@ def say_slot(slot: PatternSlot, arguments: tuple[Form, ...], scope: Scope) -> st
     if slot.value or slot.place >= len(arguments):
         return ""
     argument = arguments[slot.place]
-    if slot.kind in (ArgumentKind.TEXT, "name"):
+    if slot.kind in (ArgumentKind.TEXT, PERSON_CLASS):
         return _bare(argument, scope)
     return _phrase(argument, scope, slot.kind == "plural")
 
@@ -319,7 +321,7 @@ def _add(phrase: NounPhrase, conjunct: Application, scope: Scope) -> None:
     """Put one description before the noun, after it or in its place."""
     kinds = [argument_kind(each) for each in conjunct.arguments]
     phrase.has_superlative |= str(conjunct.predicate).endswith(SUPERLATIVES)
-    phrase.is_person |= not {"gesture", "name"}.isdisjoint(map(scope.kind_of, conjunct.arguments))
+    phrase.is_person |= not PERSONAL_CLASSES.isdisjoint(map(scope.kind_of, conjunct.arguments))
     phrase.is_plural |= any(
         isinstance(each, Constant) and isinstance(each.value, int) and each.value != 1
         for each in conjunct.arguments

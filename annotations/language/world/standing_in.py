@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from annotations.language.forms import Constant
+from annotations.language.forms import PERSON, Constant
 from annotations.language.texts import KNOWN_PATTERNS, STAND_IN, article, looks_plural
 from annotations.language.world.gloss_patterns import read_pattern
 from annotations.language.world.predicates import Predicate
@@ -42,7 +42,7 @@ def can_stand_in(text: str, of_patterns: frozenset[str]) -> bool:
         or " of " in text
         or not text
         or text.split(" ", 1)[0] in _BEGINNINGS
-        or text.endswith("person")
+        or text.endswith(PERSON)
         or looks_plural(text)
         or article(text) == "an"
     )
