@@ -13,12 +13,12 @@ from django.urls import reverse
 from django.utils.functional import SimpleLazyObject
 
 from annotations.language.texts import say_count
-from annotations.models import Duty, Notice, World
-from annotations.showing.listing import count_some
+from annotations.models import Duty, Notice, User, World
 from gpsr_site.overview.counts import LARGE, Counts, counts_of
 from gpsr_site.overview.workers import workers_now
 from gpsr_site.pages.rail import GROUPS, RailEntry, way_to
 
+MOST_UNREAD = 99  # the top bar says that there are more
 CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the reader has closed
 
 
@@ -59,11 +59,14 @@ def frame(request: HttpRequest) -> dict[str, Any]:
         "worlds": World.objects.visible_to(user),
         "worker": SimpleLazyObject(workers_now),
         "closed_notice": unquote(request.COOKIES.get(CLOSED_NOTICE, "")),
-        "unread": SimpleLazyObject(
-            lambda: count_some(Notice.objects.of(user).unread()) if user.is_authenticated else 0
-        ),
+        "unread": SimpleLazyObject(lambda: _count_unread(user) if user.is_authenticated else 0),
         **_frame_of_world(request),
     }
+
+
+def _count_unread(user: User) -> int:
+    """Count no further than the top bar says: more would be joined with all comments."""
+    return Notice.objects.of(user).unread().order_by()[: MOST_UNREAD + 1].count()
 
 
 def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
