@@ -86,6 +86,13 @@ def test_the_first_production_and_template_on_the_pages(world, anna):
     assert not anna.get("/w/home/grammar/new/").context["form"]["nonterminal"].value()
 
 
+def test_one_task_category_is_not_asked_for(tiny_world, anna, annotate):
+    label = 'for="id_task_category"'
+    assert label not in anna.get("/w/home/templates/new/").content.decode()
+    annotate("post", "task-categories/", {"name": "plants"})
+    assert label in anna.get("/w/home/templates/new/").content.decode()
+
+
 def test_a_first_template_needs_no_production(world, anna):
     assert anna.post("/w/home/templates/new/", {**GO, "status": "ready"}).status_code == 302
     assert world.commands.get().anonymized_text == "go to the <room>"

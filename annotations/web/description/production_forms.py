@@ -50,15 +50,15 @@ class ProductionForm(NounForm):
     )
     expansion = forms.CharField(
         max_length=MAX_PATTERN,
-        widget=forms.Textarea(
-            attrs={"rows": 2, "data-editor": "pattern", "placeholder": "go to the {room}"}
-        ),
+        widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),
     )
     source = forms.CharField(label="Set", max_length=MAX_SOURCE, required=False)
 
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
         self.checked: CheckedProduction | None = None
+        if first := world.entity_classes.first():
+            self.fields["expansion"].widget.attrs["placeholder"] = f"go to the {{{first.token}}}"
         self.categories = categories_to_write_for(world)
         self.sets = rule_files(self.categories)
         if self.row and self.row.source not in self.sets:
