@@ -5,6 +5,7 @@ from __future__ import annotations
 from annotations.language.induction.additions import (
     CATEGORY,
     category_of,
+    marked,
     new_classes,
     new_entities,
     new_predicates,
@@ -35,5 +36,5 @@ from annotations.language.induction.proposal import (
     with_class_named,
     with_predicate_named,
 )
-from annotations.language.induction.rules import Rule
+from annotations.language.induction.rules import Rule, is_slot
 from annotations.language.induction.synonyms import Synonyms, find_synonyms

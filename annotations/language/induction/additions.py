@@ -12,6 +12,7 @@ from annotations.language.forms import (
     print_sequence,
 )
 from annotations.language.grammar import Grammar, read_production
+from annotations.language.grounding import Anonymizer
 from annotations.language.induction.classes import folded
 from annotations.language.induction.proposal import KnownWorld, Proposal
 from annotations.language.templates import TaskCategory, make_template
@@ -70,3 +71,14 @@ def with_proposal(known: Ontology, proposal: Proposal, world: KnownWorld) -> Ont
     """Return the ontology of a world together with what is proposed."""
     classes = known.classes.with_rows(new_classes(proposal, known.classes))
     return Ontology((*known.entities, *new_entities(proposal, world)), classes)
+
+
+def marked(said: str, ontology: Ontology) -> str:
+    """Return a command with marks around the entities that it names, as the line of an example."""
+    anonymized = Anonymizer(ontology).anonymize(said)
+    line, place = "", 0
+    for span in anonymized.spans:
+        name = anonymized.original[span.start : span.end]
+        line += f"{anonymized.original[place : span.start]}[{name}]({span.entity_class})"
+        place = span.end
+    return line + anonymized.original[place:]
