@@ -65,9 +65,20 @@ export function enhance(page) {
     rewritten.remove();
     rewrite(lines, rewritten.value);
   });
-  // What was tried, or has become a line, makes room for the next.
+  // What is tried is first in the list, which asks for all of its answers.
+  page.querySelector("[data-examples-try]").addEventListener("submit", (event) => {
+    event.preventDefault();
+    const text = said.value.trim();
+    if (!text) return;
+    const row = document.createElement("li");
+    const sent = Object.assign(document.createElement("input"), { type: "hidden", name: "said", value: text });
+    row.append(sent, text);
+    page.querySelector("#tried > ul").prepend(row);
+    said.value = "";
+    page.querySelector("#tried").dispatchEvent(new Event("renew"));
+  });
   page.addEventListener("htmx:afterRequest", (event) => {
     const { elt, successful } = event.detail;
-    if (successful && elt.matches("[data-examples-try], [data-examples-teach]")) said.value = "";
+    if (successful && elt.matches("[data-examples-teach]")) said.value = "";
   });
 }

@@ -14,6 +14,7 @@ from annotations.language.forms import (
 from annotations.language.grammar import Grammar, read_production
 from annotations.language.grounding import Anonymizer
 from annotations.language.induction.classes import folded
+from annotations.language.induction.marked_lines import Mark
 from annotations.language.induction.proposal import KnownWorld, Proposal
 from annotations.language.templates import TaskCategory, make_template
 from annotations.language.texts import plural
@@ -73,12 +74,14 @@ def with_proposal(known: Ontology, proposal: Proposal, world: KnownWorld) -> Ont
     return Ontology((*known.entities, *new_entities(proposal, world)), classes)
 
 
-def marked(said: str, ontology: Ontology) -> str:
+def marked(said: str, ontology: Ontology, proposal: Proposal) -> str:
     """Return a command with marks around the entities that it names, as the line of an example."""
+    unnamed = {each.token for each in proposal.classes if not each.is_named}
     anonymized = Anonymizer(ontology).anonymize(said)
     line, place = "", 0
     for span in anonymized.spans:
         name = anonymized.original[span.start : span.end]
-        line += f"{anonymized.original[place : span.start]}[{name}]({span.entity_class})"
+        token = "" if span.entity_class in unnamed else span.entity_class
+        line += f"{anonymized.original[place : span.start]}{Mark(name, token)}"
         place = span.end
     return line + anonymized.original[place:]

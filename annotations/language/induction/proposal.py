@@ -290,7 +290,7 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         predicates,
         synonyms,
         tuple(templates),
-        offers_for(tuple(new), analogies, {each.token: each.texts for each in classes}),
+        offers_for(tuple(new), analogies, {each.token: each.marks for each in classes}),
         tuple(_doubts(predicates, classes, tuple(lines), named, places, tokens, said_apart(text))),
         tokens,
         {line: tuple(dict.fromkeys(names)) for line, names in of_lines.items()},

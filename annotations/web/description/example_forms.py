@@ -73,7 +73,7 @@ def corrected(text: str, proposal: Proposal, sent: QueryDict, ontology: Ontology
         kind = sent.get("offers", "")
         lines = [
             *sent.getlist("line"),
-            *(marked(each, ontology) for each in sent.getlist("said")),
+            *(marked(each, ontology, proposal) for each in sent.getlist("said")),
             *(each.line for each in proposal.offers if each.kind == kind),
         ]
         text = "\n".join(filter(None, [text.rstrip(), *(" ".join(each.split()) for each in lines)]))

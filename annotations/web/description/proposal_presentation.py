@@ -86,9 +86,11 @@ class ShownWords:
 
 @dataclass(frozen=True, slots=True)
 class ShownOffers:
+    """``lines`` are some of ``total``, each beside the command alone."""
+
     kind: str
     title: str
-    lines: tuple[str, ...]
+    lines: tuple[tuple[str, str], ...]
     total: int
 
 
@@ -252,6 +254,6 @@ def _doubt(each: Doubt, proposal: Proposal) -> ShownDoubt:
 
 def _offers(offers: Sequence[Offer]) -> Iterator[ShownOffers]:
     for kind, title in OFFER_TITLES.items():
-        lines = tuple(each.line for each in offers if each.kind is kind)
+        lines = [(each.line, each.line.partition(" = ")[0]) for each in offers if each.kind is kind]
         if lines:
-            yield ShownOffers(str(kind), title, lines[:MOST_SHOWN], len(lines))
+            yield ShownOffers(str(kind), title, tuple(lines[:MOST_SHOWN]), len(lines))

@@ -25,12 +25,13 @@ def try_examples(request: WorldRequest, world: World) -> HttpResponse:
     given = (" ".join(each.split())[:MOST_CHARACTERS] for each in request.POST.getlist("said"))
     said = list(dict.fromkeys(filter(None, given)))[:MOST_TRIED]
     context: dict[str, object] = {}
+    text = form.cleaned_data["lines"] if form.is_valid() else ""
     try:
-        answerer = answerer_with(world, form.cleaned_data["lines"] if form.is_valid() else "")
+        answerer = answerer_with(world, text) if said else None
     except LanguageError as error:
         context["refused"] = sentence_of(error)
     else:
-        answers = map(json.loads, answerer.parse(said, beam=1)) if answerer and said else ()
+        answers = map(json.loads, answerer.parse(said, beam=1)) if answerer else ()
         nothing = ({"utterance": each, "is_unknown": True} for each in said)
         context["tried"] = list(answers if answerer else nothing)
     return render(request, "parser_service/serving/_tried.html", context)

@@ -36,11 +36,11 @@ def rewritten(response) -> str:
         ),
         (
             {"change": "add", "said": "water the tomatoes now"},
-            f"{LINES}\nwater the [tomatoes](thing) now",
+            f"{LINES}\nwater the [tomatoes] now",
         ),
         (
             {"change": "add", "offers": "order"},
-            f"{LINES}\nin [bed two](bed), water the [tomatoes](thing)",
+            f"{LINES}\nin [bed two](bed), water the [tomatoes]",
         ),
         ({"change": "other"}, ""),
     ],
