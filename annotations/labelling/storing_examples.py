@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from django.core.exceptions import ValidationError
 from django.db import transaction
-from django.db.models import Max
 
 from annotations import models
 from annotations.editing.edits import add_all, change_many
@@ -45,7 +44,7 @@ from annotations.language.texts import LanguageError, Position, Problem, Refusal
 from annotations.language.world import Predicate
 from annotations.models import Duty, Editable, User, World
 from annotations.models.description import TemplateStatus
-from annotations.rows.composition import split_entry
+from annotations.rows.composition import new_category, require_set_name, split_entry
 from annotations.rows.from_rows import classes_of
 from annotations.rows.known_world import known_world_of
 from annotations.rows.stored_problems import as_json
@@ -90,7 +89,9 @@ def store_examples(
 
     Raises:
         NoExamples: a line is no example, a class has no name yet, or there is nothing to store.
+        LanguageError: a task category cannot have this name, or a stored text cannot be read.
     """
+    require_set_name(category)
     with transaction.atomic():
         held = World.objects.hold().get(pk=world.pk)
         if made_before(by, once):
@@ -111,7 +112,7 @@ def store_examples(
             add_all(groups, by)
         except ValidationError as error:
             raise NoExamples([error_at(Position(), "; ".join(error.messages))]) from error
-        classes, entities, predicates, productions, templates = map(len, groups)
+        classes, entities, predicates, productions, templates, _ = map(len, groups)
         return StoredExamples(
             *(classes, entities, predicates, len(changed), productions, templates),
             utterances=_keep_lines(held, proposal, known, by),
@@ -147,8 +148,11 @@ def problems_of(proposal: Proposal, world: World) -> Iterator[Problem]:
 def _unsaved(
     world: World, proposal: Proposal, known: KnownWorld, name: str
 ) -> list[Sequence[Editable]]:
-    """Return the rows to store: classes, entities, predicates, productions, templates."""
+    """Return the rows to store: classes, entities, predicates, productions, templates, and a task category."""
     ontology, _ = models.Ontology.objects.get_or_create(world=world)
+    grammar, _ = models.Grammar.objects.get_or_create(world=world)
+    category = grammar.task_categories.filter(name=name).first() or new_category(grammar, name)
+    is_new = category.pk is None and bool(proposal.templates)
     return [
         [
             models.EntityClass.of(world, each, 0)
@@ -169,7 +173,8 @@ def _unsaved(
             for each in new_predicates(proposal, known)
             if each.name not in known.predicates
         ],
-        *(_commands(_category(world, name), proposal) if proposal.templates else ((), ())),
+        *_commands(category, proposal),
+        [category] if is_new else [],
     ]
 
 
@@ -177,14 +182,16 @@ def _commands(
     category: models.TaskCategory, proposal: Proposal
 ) -> tuple[list[models.Production], list[models.SemanticTemplate]]:
     """Return the unsaved productions and templates of a task category."""
-    own = {
-        "grammar": category.grammar,
-        "source": split_entry(category.rule_sources[-1])[0],
-        "task_category": category.name,
-    }
+    source = split_entry(category.rule_sources[-1])[0]
     productions = [
-        models.Production(nonterminal=name, expansion=expansion, **own)
-        for name, expansion in new_productions(proposal)
+        models.Production(
+            grammar=category.grammar,
+            source=source,
+            task_category=category.name,
+            nonterminal=nonterminal,
+            expansion=expansion,
+        )
+        for nonterminal, expansion in new_productions(proposal)
     ]
     templates = [
         models.SemanticTemplate.for_category(
@@ -193,20 +200,6 @@ def _commands(
         for each in proposal.templates
     ]
     return productions, templates
-
-
-def _category(world: World, name: str) -> models.TaskCategory:
-    grammar, _ = models.Grammar.objects.get_or_create(world=world)
-    last = grammar.task_categories.aggregate(last=Max("position"))["last"]
-    category, _ = grammar.task_categories.get_or_create(
-        name=name,
-        defaults={
-            "position": 0 if last is None else last + 1,
-            "rule_sources": [f"{name}_grammar.txt"],
-            "template_sources": [f"{name}_semantics.txt"],
-        },
-    )
-    return category
 
 
 def _signatures(predicate: Predicate) -> list[list[str]]:

@@ -9,7 +9,7 @@ from django.http import HttpResponse
 from django.shortcuts import redirect, render
 
 from annotations.labelling.storing_examples import NoExamples, store_examples
-from annotations.language.induction import propose, with_proposal
+from annotations.language.induction import CATEGORY, propose, with_proposal
 from annotations.language.texts import LanguageError, say_count
 from annotations.models import Duty, World
 from annotations.people.access import NOTHING, READ_AND_WRITE, WRITE, WorldRequest, world_view
@@ -28,10 +28,12 @@ def by_example(request: WorldRequest, world: World) -> HttpResponse:
         sent = form.cleaned_data
         try:
             stored = store_examples(
-                world, sent["lines"], request.user, sent["task_category"], sent["once"]
+                world, sent["lines"], request.user, sent["task_category"] or CATEGORY, sent["once"]
             )
         except NoExamples as error:
             form.add_error("lines", error.message)
+        except LanguageError as error:
+            form.add_error("lines", sentence_of(error))
         else:
             if stored is not None:
                 counts = {
