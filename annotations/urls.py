@@ -15,6 +15,7 @@ from annotations.web.description import (
     class_pages,
     coverage_pages,
     entity_pages,
+    example_pages,
     guidelines_pages,
     production_pages,
     recipe_pages,
@@ -96,6 +97,8 @@ urlpatterns = [
     path(
         "coverage/repair/<int:pk>/", template_repair_pages.template_repair, name="template_repair"
     ),
+    path("examples/", example_pages.by_example, name="by_example"),
+    path("examples/preview/", example_pages.by_example_preview, name="by_example_preview"),
     path("templates/", template_pages.templates, name="templates"),
     path("templates/new/", template_pages.template_new, name="template_new"),
     path("templates/check/", template_pages.template_check, name="template_check"),

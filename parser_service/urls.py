@@ -27,6 +27,7 @@ from parser_service.web.serving import (
     playground_pages,
     promotion_pages,
     robot_pages,
+    try_examples_pages,
 )
 
 urlpatterns = [
@@ -83,6 +84,7 @@ urlpatterns = [
     path("runs/<int:pk>/defaults/", default_pages.defaults, name="defaults"),
     path("runs/<int:pk>/sensitivity/", sensitivity_pages.sensitivity, name="sensitivity"),
     path("runs/<int:pk>/probes/", analysis_pages.probes, name="probes"),
+    path("examples/try/", try_examples_pages.try_examples, name="try_examples"),
     path("parse/", playground_pages.playground, name="playground"),
     path("parse/together/", joint_pages.joint_plan, name="joint_plan"),
     path("parse/together/ask/", joint_pages.joint_plan_ask, name="joint_plan_ask"),

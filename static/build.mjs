@@ -23,7 +23,7 @@ const builds = [
   {
     ...common,
     format: "esm",
-    entryPoints: ["main", "charts", "tree", "editor", "label", "audit", "refusal", "review", "campaign", "entrance", "my-drafts"].map((name) =>
+    entryPoints: ["main", "charts", "tree", "editor", "label", "examples", "audit", "refusal", "review", "campaign", "entrance", "my-drafts"].map((name) =>
       here(`src/${name}.js`),
     ),
   },

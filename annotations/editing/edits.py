@@ -104,25 +104,42 @@ def add_many(rows: Sequence[Row], by: User, once: str = "") -> int:
     Returns how many were added: 0 where ``once``, the key of the form, has added them before.
     Raises ValidationError where one of them is there already.
     """
-    if not rows:
+    return add_all([rows], by, once)
+
+
+def add_all(groups: Sequence[Sequence[Editable]], by: User, once: str = "") -> int:
+    """Do what ``add_many`` does for rows of several models, a group each, of one world."""
+    groups = [rows for rows in groups if rows]
+    if not groups:
         return 0
     with transaction.atomic():
-        first = rows[0]
-        world = _lock(first.owning_world)
+        world = _lock(groups[0][0].owning_world)
         if made_before(by, once):
             return 0
-        beside = type(first)._default_manager.filter(**{first.world_path: world})
+        for rows in groups:
+            _insert_many(rows, world, by)
+        remember(by, once, groups[0][0].pk)
+        for rows in groups:
+            check_again(world, type(rows[0]))
+        if any(row.makes_commands for rows in groups for row in rows):
+            _bring_up_to_date(world, by)
+        return sum(map(len, groups))
+
+
+def _insert_many(rows: Sequence[Editable], world: World, by: User) -> None:
+    """Store unsaved rows of one model, behind the others where they have a place."""
+    model = type(rows[0])
+    last = None
+    if isinstance(rows[0], Placed):
+        beside = model._default_manager.filter(**{model.world_path: world})
         last = beside.aggregate(last=Max("position"))["last"]
-        for position, row in enumerate(rows, start=0 if last is None else last + 1):
-            assert isinstance(row, Placed)
-            row.position, row.version = position, 1
-            row.note_editor(by)
-        with _refuse_repeated(type(first)):
-            stored = type(first)._default_manager.bulk_create(rows, batch_size=BATCH)
-        keep(stored, ADDED, by)
-        remember(by, once, stored[0].pk)
-        _follow(first, world, by)
-        return len(stored)
+    for position, row in enumerate(rows, start=0 if last is None else last + 1):
+        if isinstance(row, Placed):
+            row.position = position
+        row.version = 1
+        row.note_editor(by)
+    with _refuse_repeated(model):
+        keep(model._default_manager.bulk_create(rows, batch_size=BATCH), ADDED, by)
 
 
 def change(row: Row, values: Mapping[str, Any], by: User, version: int, again: bool = True) -> Row:

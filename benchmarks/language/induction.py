@@ -21,7 +21,6 @@ from typing import Any
 from annotations.language.forms import (
     Application,
     Constant,
-    EntityClass,
     EntityClasses,
     Form,
     Lambda,
@@ -29,27 +28,27 @@ from annotations.language.forms import (
     read_form,
     to_corpus,
 )
-from annotations.language.grammar import Grammar, read_production
 from annotations.language.grounding import Anonymizer
 from annotations.language.induction import (
+    KnownWorld,
     OfferKind,
     Proposal,
+    category_of,
     propose,
     read_example,
     with_class_named,
     with_predicate_named,
+    with_proposal,
 )
 from annotations.language.templates import (
     Balance,
     Language,
     SampleRequest,
-    TaskCategory,
     TemplateChart,
     generate,
-    make_template,
     read_generator_folder,
 )
-from annotations.language.world import Entity, Ontology, read_ontology
+from annotations.language.world import Ontology, read_ontology
 from benchmarks.fresh_site import DATA
 from parser_service.parsers.interface import Candidate, Knowledge
 from parser_service.parsers.oracle import GrammarOracle
@@ -101,31 +100,8 @@ def corrected(domain: Mapping[str, Any], kinds: Sequence[OfferKind] = ()) -> tup
 
 def oracle_of(proposal: Proposal) -> GrammarOracle:
     """Return the oracle of a world that has what is proposed and nothing else."""
-    classes = EntityClasses(
-        tuple(
-            EntityClass(*(each.token,) * 2, f"{each.token}s", 0, each.token)
-            for each in proposal.classes
-        )
-    )
-    entities = (Entity(each.token, text) for each in proposal.classes for text in each.texts)
-    knowledge = Knowledge(
-        grammar=(category_of(proposal),),
-        ontology=Ontology(tuple(entities), classes),
-    )
-    return GrammarOracle(knowledge=knowledge)
-
-
-def category_of(proposal: Proposal) -> TaskCategory:
-    """Return the grammar and the templates that are proposed."""
-    productions = (
-        *(
-            f"${each.name} = {' | '.join(map(' '.join, each.phrases))}"
-            for each in proposal.synonyms
-        ),
-        *(f"$Main = {each.pattern}" for each in proposal.templates),
-    )
-    templates = tuple(make_template(each.pattern, each.form) for each in proposal.templates)
-    return TaskCategory("commands", Grammar(tuple(map(read_production, productions))), templates)
+    ontology = with_proposal(Ontology((), EntityClasses(())), proposal, KnownWorld())
+    return GrammarOracle(knowledge=Knowledge(grammar=(category_of(proposal),), ontology=ontology))
 
 
 def grounded(candidate: Candidate) -> Form:

@@ -53,6 +53,14 @@ def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
             is_optional=True,
         ),
         FirstStep(
+            "Or write what people say: entities, grammar and templates follow from it.",
+            "Write examples",
+            "by_example",
+            Duty.ANNOTATE,
+            bool(counts.templates),
+            is_optional=True,
+        ),
+        FirstStep(
             "Name what your robot knows: plants, beds, people.",
             "Name an entity",
             "entity_new",

@@ -105,6 +105,7 @@ DESCRIBE = (
         page="templates",
         count="templates",
         waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
+        tabs=(RailEntry(label="By example", page="by_example", duty=Duty.ANNOTATE),),
     ),
     RailEntry(
         label="Coverage",

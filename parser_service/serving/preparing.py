@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property, lru_cache, partial
@@ -24,7 +24,7 @@ from annotations.language.plans import (
     usual_places,
     with_proposals,
 )
-from annotations.language.templates import spread_derivations
+from annotations.language.templates import TaskCategory, spread_derivations
 from annotations.language.texts import LanguageError, Refusal, has_half_character, normalise
 from annotations.language.world import Ontology, Predicate
 from annotations.models import World
@@ -170,14 +170,18 @@ def _learn(pk: int, created_at: datetime, revision: int) -> LearnedUse:
 
 def _derive(world: World) -> tuple[tuple[Symbols, Form], ...]:
     try:
-        return tuple(islice(_derivations(world), MOST_COMMANDS))
+        return derive(task_categories(world))
     except LanguageError:  # a grammar that cannot be read says nothing; its page says why
         return ()
 
 
-def _derivations(world: World) -> Iterator[tuple[Symbols, Form]]:
-    """Yield some commands of each template with their forms."""
-    for category in task_categories(world):
+def derive(categories: Iterable[TaskCategory]) -> tuple[tuple[Symbols, Form], ...]:
+    """Return some commands of each template with their forms. Raises LanguageError where a grammar has a cycle."""
+    return tuple(islice(_derivations(categories), MOST_COMMANDS))
+
+
+def _derivations(categories: Iterable[TaskCategory]) -> Iterator[tuple[Symbols, Form]]:
+    for category in categories:
         drawn = spread_derivations(category, MOST_OF_A_TEMPLATE, Random(0))
         yield from ((each.symbols, each.form) for each in drawn)
 

@@ -33,6 +33,7 @@ onContent((root) => {
     ["[data-tree]", "tree"],
     ["[data-editor]", "editor"],
     ["[data-label-page]", "label"],
+    ["[data-examples]", "examples"],
     ["[data-audit-page]", "audit"],
     ["[data-refusal]", "refusal"],
     ["[data-case]", "review"],

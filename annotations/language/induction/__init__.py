@@ -2,8 +2,19 @@
 
 from __future__ import annotations
 
+from annotations.language.induction.additions import (
+    CATEGORY,
+    category_of,
+    marked,
+    new_classes,
+    new_entities,
+    new_predicates,
+    new_productions,
+    with_proposal,
+)
 from annotations.language.induction.analogies import Derived, derive
 from annotations.language.induction.classes import MarkedClass, folded
+from annotations.language.induction.clauses import clauses_of, names_all
 from annotations.language.induction.marked_lines import (
     EXAMPLE,
     MOST_CHARACTERS,
@@ -12,6 +23,7 @@ from annotations.language.induction.marked_lines import (
     Mark,
     read_example,
     read_examples,
+    text_of,
 )
 from annotations.language.induction.offers import Offer, OfferKind
 from annotations.language.induction.proposal import (
@@ -24,5 +36,5 @@ from annotations.language.induction.proposal import (
     with_class_named,
     with_predicate_named,
 )
-from annotations.language.induction.rules import Rule
+from annotations.language.induction.rules import Rule, is_slot
 from annotations.language.induction.synonyms import Synonyms, find_synonyms

@@ -40,6 +40,11 @@ class MarkedClass:
     is_named: bool
     evidence: tuple[Evidence, ...]
 
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """A mark for each text, with the class where somebody has said it."""
+        return tuple(Mark(text, self.token if self.is_named else "") for text in self.texts)
+
 
 def classes_of(
     places: Sequence[MarkedPlace],

@@ -28,6 +28,13 @@ def clauses_of(example: Example) -> tuple[tuple[Part, ...], ...]:
     return tuple(clauses)
 
 
+def names_all(example: Example) -> bool:
+    """Return whether a line says each of its commands in full: no word stands for what was named before."""
+    return not any(
+        isinstance(each, str) and each.lower() in _STAND_FOR_LAST for each in example.parts
+    )
+
+
 def _cut(parts: tuple[Part, ...]) -> Iterator[tuple[Part, ...]]:
     start = place = 0
     while place < len(parts):

@@ -4,14 +4,15 @@
     irrigate the [roses](plant) = water
 
 A class may stand behind a mark, in parentheses, as in the training files of Rasa. Behind an equals sign stands what
-the command means: the name of its predicate, or its whole form with the marked texts as constants.
+the command means: the name of its predicate, or its whole form with the marked texts as constants. A comment can say
+that two predicates, or the classes of two marks, are not one: ``# irrigate is not water``.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from annotations.language.forms import Form, read_form, require_token, to_template
@@ -36,6 +37,7 @@ EXAMPLE = "water the [tomatoes] in [bed two]"
 _MARK = re.compile(r"\[(?P<text>[^\[\]]*)\](?:\((?P<token>[^()]*)\))?|[^\s\[\]]+|[\[\]]")
 _WORD = re.compile(r"[^\s,.;:!?\"“”]+|,")
 _NAME = re.compile(r"[a-z]\w*")
+_APART = re.compile(r"#\s*(\[[^\[\]]+\]|\S+) is not (\[[^\[\]]+\]|\S+)\s*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +59,14 @@ class Example:
     """A command: its words and marks in order, without what is said out of courtesy, and what it means.
 
     ``action`` is the name of its predicate and ``form`` its whole form; both are empty where nobody has said so.
-    ``line`` counts from 1.
+    ``line`` counts from 1. ``said`` is the command as it was written, without what was marked and meant.
     """
 
     parts: tuple[Part, ...]
     action: str = ""
     form: Form | None = None
     line: int = 1
+    said: str = field(default="", compare=False)
 
     @property
     def marks(self) -> tuple[Mark, ...]:
@@ -72,13 +75,18 @@ class Example:
     @property
     def text(self) -> str:
         """The command as one says it."""
-        words = (part.text if isinstance(part, Mark) else part for part in self.parts)
-        return " ".join(words).replace(" ,", ",")
+        return text_of(self.parts)
 
     def __str__(self) -> str:
         meaning = to_template(self.form) if self.form is not None else self.action
         said = " ".join(map(str, self.parts)).replace(" ,", ",")
         return f"{said} = {meaning}" if meaning else said
+
+
+def text_of(parts: Iterable[Part]) -> str:
+    """Return the parts of a command as one says them."""
+    words = (part.text if isinstance(part, Mark) else part for part in parts)
+    return " ".join(words).replace(" ,", ",")
 
 
 def read_examples(text: str) -> tuple[tuple[Example, ...], tuple[Problem, ...]]:
@@ -122,7 +130,8 @@ def read_example(line: str, position: Position | None = None) -> Example:
     parts = tuple(_parts(said, place))
     if all(part == "," for part in parts):
         raise LanguageError("the line says nothing", place, f"write a command, as in: {EXAMPLE}")
-    example = Example(_without_courtesy(parts), line=place.line)
+    written = _MARK.sub(lambda match: match[0] if match["text"] is None else match["text"], said)
+    example = Example(_without_courtesy(parts), line=place.line, said=" ".join(written.split()))
     return (
         _with_meaning(example, meaning.strip(), place.shifted(len(said) + 3)) if equals else example
     )
@@ -144,7 +153,12 @@ def _parts(said: str, place: Position) -> Iterator[Part]:
                 "a bracket has no partner", here, f"mark what may change, as in: {EXAMPLE}"
             )
         else:
-            yield from _WORD.findall(match[0])
+            for word in _WORD.findall(match[0]):
+                if word[0] in "<$":  # what a slot and a nonterminal begin with
+                    raise LanguageError(
+                        f"“{word[:40]}” is no word of a command", here, "write it without < and $"
+                    )
+                yield word
 
 
 def _require_class(token: str, place: Position) -> None:
@@ -206,3 +220,9 @@ def rewritten(text: str, change: Callable[[Example], Example]) -> str:
         if changed != example:
             lines[number] = str(changed)
     return "\n".join(lines)
+
+
+def said_apart(text: str) -> frozenset[frozenset[str]]:
+    """Return the pairs of names, and of marked texts in their brackets, that a text says are not one."""
+    found = map(_APART.fullmatch, map(str.strip, text.splitlines()))
+    return frozenset(frozenset(match.groups()) for match in found if match)

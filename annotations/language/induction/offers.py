@@ -53,9 +53,9 @@ class Offer:
 
 
 def offers_for(
-    rules: Sequence[Rule], derived: Iterable[Derived], texts: Mapping[str, Sequence[str]]
+    rules: Sequence[Rule], derived: Iterable[Derived], texts: Mapping[str, Sequence[Mark]]
 ) -> tuple[Offer, ...]:
-    """Return what may be said besides ``rules``; ``texts`` has the entities of each class token."""
+    """Return what may be said besides ``rules``; ``texts`` has marks for the entities of each class token."""
     said = {rule.words for rule in rules}
     verbs = {rule.words[0]: head_predicate(rule.form) for rule in rules}
     found: dict[Words, Offer] = {}
@@ -76,7 +76,7 @@ def offers_for(
     return tuple(found.values())
 
 
-def _offer(rule: Rule, kind: OfferKind, source: Rule, texts: Mapping[str, Sequence[str]]) -> Offer:
+def _offer(rule: Rule, kind: OfferKind, source: Rule, texts: Mapping[str, Sequence[Mark]]) -> Offer:
     number = 0
     parts: list[str | Mark] = []
     filled: dict[int, str] = {}
@@ -87,9 +87,10 @@ def _offer(rule: Rule, kind: OfferKind, source: Rule, texts: Mapping[str, Sequen
             continue
         number += 1
         token = word[1:-1]
-        filled[number] = texts[token][used[token] % len(texts[token])]
+        mark = texts[token][used[token] % len(texts[token])]
         used[token] += 1
-        parts.append(Mark(filled[number], token))
+        filled[number] = mark.text
+        parts.append(mark)
     example = Example(tuple(parts), form=_with_texts(rule.form, filled))
     return Offer(str(example), kind, head_predicate(rule.form), source)
 

@@ -21,10 +21,12 @@ from annotations.language.forms import (
     Nonterminal,
     Text,
     Wildcard,
+    canonical_text,
     head_predicate,
     print_sequence,
     to_template,
 )
+from annotations.language.grammar import CHECK_STEPS, Budget
 from annotations.language.induction.actions import Action, ArgumentOrder, orders_of, read_action
 from annotations.language.induction.analogies import Derived, derive
 from annotations.language.induction.classes import (
@@ -40,6 +42,7 @@ from annotations.language.induction.marked_lines import (
     Part,
     read_examples,
     rewritten,
+    said_apart,
 )
 from annotations.language.induction.offers import Offer, offers_for
 from annotations.language.induction.rules import (
@@ -49,7 +52,13 @@ from annotations.language.induction.rules import (
     is_slot,
 )
 from annotations.language.induction.synonyms import Synonyms, find_synonyms, with_nonterminals
-from annotations.language.texts import ARTICLES, DETERMINERS, MAX_GLOSS, Problem
+from annotations.language.templates import TemplateChart
+from annotations.language.texts import (
+    ARTICLES,
+    DETERMINERS,
+    MAX_GLOSS,
+    Problem,
+)
 from annotations.language.world import Predicate, PredicateKind, signature_of
 
 _ANY = "<>"  # a slot whose class is not known yet
@@ -59,14 +68,15 @@ _ANY = "<>"  # a slot whose class is not known yet
 class KnownWorld:
     """What a world has already.
 
-    ``texts`` are what its entities are called, folded, with their class; ``rules`` its templates without nonterminals;
-    ``nonterminals`` the names that its grammar has.
+    ``texts`` are what its entities are called, folded, with their class; ``rules`` some commands of its templates;
+    ``nonterminals`` the names that its grammar has; ``chart`` understands all of its commands.
     """
 
     texts: Mapping[str, str] = field(default_factory=dict)
     predicates: Mapping[str, Predicate] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
     nonterminals: frozenset[str] = frozenset()
+    chart: TemplateChart | None = None
 
     @cached_property
     def orders(self) -> tuple[ArgumentOrder, ...]:
@@ -100,6 +110,32 @@ class KnownWorld:
             ):
                 found.setdefault((head_predicate(rule.form), role), token[1:-1])
         return found
+
+    def understands(self, rule: Rule) -> bool:
+        """Return whether a command of its templates has the words and the form of a rule."""
+        if self.chart is None:
+            return False
+        bare = _without_articles(rule.words)
+        with_the = (each for word in bare for each in (("the", word) if is_slot(word) else (word,)))
+        means = canonical_text(_with_tokens(rule.form))
+        return any(
+            each.form_text == means
+            for words in (rule.words, bare, with_the)
+            for each in self.chart.parse(" ".join(words), Budget(CHECK_STEPS))
+        )
+
+
+def _with_tokens(form: Form) -> Form:
+    """Return the form with class tokens for its slots, as commands have them."""
+    match form:
+        case Wildcard(name=name):
+            return Constant(f"<{name}>")
+        case Lambda(variable, type_, bodies):
+            return Lambda(variable, type_, tuple(map(_with_tokens, bodies)))
+        case Application(predicate, arguments):
+            return Application(predicate, tuple(map(_with_tokens, arguments)))
+        case _:
+            return form
 
 
 def _roles_in_order(rule: Rule) -> list[str] | None:
@@ -165,16 +201,23 @@ class ProposedTemplate:
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """What only a person can say: whether two classes, or two predicates, are one. ``kind`` is class or predicate."""
+    """What only a person can say: whether two classes, or two predicates, are one. ``kind`` is class or predicate.
+
+    ``comment`` is the line that says that they are not.
+    """
 
     kind: str
     first: str
     second: str
+    comment: str
 
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What the lines make. Classes and predicates that the world has are among them where lines use them."""
+    """What the lines make. Classes and predicates that the world has are among them where lines use them.
+
+    ``understood`` are the lines whose commands the world understands already: they make no templates.
+    """
 
     examples: tuple[Example, ...]
     problems: tuple[Problem, ...]
@@ -186,6 +229,7 @@ class Proposal:
     doubts: tuple[Doubt, ...]
     tokens: Mapping[Mark, str]
     predicates_of_lines: Mapping[int, tuple[str, ...]]
+    understood: tuple[int, ...] = ()
 
 
 def propose(text: str, known: KnownWorld | None = None) -> Proposal:
@@ -214,10 +258,12 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         # With and without an article is one: the oracle passes over them.
         first = alike.setdefault((_without_articles(rule.words), rule.form), rule)
         lines.setdefault(first, []).append(each.example.line)
-    rules, synonyms = find_synonyms(tuple(lines))
-    synonyms, rules = _renamed(synonyms, tuple(lines), known.nonterminals)
+    new = {rule: where for rule, where in lines.items() if not known.understands(rule)}
+    not_understood = {line for where in new.values() for line in where}
+    rules, synonyms = find_synonyms(tuple(new))
+    synonyms, rules = _renamed(synonyms, tuple(new), known.nonterminals)
     of_rule: defaultdict[Rule, list[int]] = defaultdict(list)
-    for rule, where in lines.items():
+    for rule, where in new.items():
         of_rule[with_nonterminals(rule, synonyms)] += where
     templates = [ProposedTemplate(rule, tuple(sorted(set(of_rule[rule])))) for rule in rules]
     analogies = derive(rules)
@@ -244,10 +290,16 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         predicates,
         synonyms,
         tuple(templates),
-        offers_for(tuple(lines), analogies, {each.token: each.texts for each in classes}),
-        tuple(_doubts(predicates, classes, tuple(lines), named, places)),
+        offers_for(tuple(new), analogies, {each.token: each.marks for each in classes}),
+        tuple(_doubts(predicates, classes, tuple(lines), named, places, tokens, said_apart(text))),
         tokens,
         {line: tuple(dict.fromkeys(names)) for line, names in of_lines.items()},
+        tuple(
+            each.line
+            for each in examples
+            if each.line not in not_understood
+            and all(folded(mark.text) in known.texts for mark in each.marks)
+        ),
     )
 
 
@@ -321,7 +373,7 @@ def _predicate(name: str, rules: Sequence[Rule], known: KnownWorld) -> Predicate
     own = known.predicates.get(name)
     uses = {signature_of(each.form) for each in rules if isinstance(each.form, Application)}
     if own is not None:
-        return replace(own, signatures=tuple(sorted({*own.signatures, *uses})))
+        return replace(own, signatures=(*own.signatures, *sorted(uses - {*own.signatures})))
     said: dict[int, str] = {}
     for rule in sorted(rules, key=lambda each: len(each.words)):
         form = rule.form
@@ -357,10 +409,16 @@ def _doubts(
     rules: Sequence[Rule],
     named: Iterable[str],
     places: Sequence[MarkedPlace],
+    tokens: Mapping[Mark, str],
+    apart: Iterable[frozenset[str]],
 ) -> Iterator[Doubt]:
-    """Yield what may be one: predicates whose commands differ in their verb alone, classes behind one preposition."""
+    """Yield what may be one: predicates whose commands differ in their verb alone, classes behind one preposition.
+
+    ``apart`` are the pairs that are said not to be: names of predicates, or marked texts in their brackets.
+    """
     new = {each.predicate.name for each in predicates} - set(named)
-    seen: set[frozenset[str]] = set()
+    token_of = {f"[{mark.text}]": token for mark, token in tokens.items()}
+    seen = {frozenset(token_of.get(each, each) for each in pair) for pair in apart}
     for left, right in combinations(rules, 2):
         pair = frozenset(head_predicate(each.form) for each in (left, right))
         if (
@@ -370,18 +428,20 @@ def _doubts(
             and _differ_in_verb(left.words, right.words)
         ):
             seen.add(pair)
-            yield Doubt("predicate", head_predicate(left.form), head_predicate(right.form))
+            names = head_predicate(left.form), head_predicate(right.form)
+            yield Doubt("predicate", *names, "# {} is not {}".format(*names))
     roles: defaultdict[str, dict[str, None]] = defaultdict(dict)
-    token_of = {text: each.token for each in classes for text in each.texts}
     for place in places:
         if place.role:
-            roles[place.role].setdefault(token_of[place.mark.text])
+            roles[place.role].setdefault(tokens[place.mark])
+    member = {each.token: each.texts[0] for each in classes}
     unnamed = {each.token for each in classes if not each.is_named}
-    for tokens in roles.values():
-        for first, second in combinations(tokens, 2):
+    for of_role in roles.values():
+        for first, second in combinations(of_role, 2):
             if {first, second} & unnamed and frozenset((first, second)) not in seen:
                 seen.add(frozenset((first, second)))
-                yield Doubt("class", first, second)
+                comment = f"# [{member[first]}] is not [{member[second]}]"
+                yield Doubt("class", first, second, comment)
 
 
 def _differ_in_verb(left: Words, right: Words) -> bool:

@@ -18,11 +18,17 @@ from annotations.people.members import add_roles
 
 
 def start_choices() -> list[tuple[str, str]]:
-    """Return what a new world may begin with, and what that is: nothing, or a world that comes with this project."""
+    """Return what a new world may begin with, and what that is: nothing, what people say, or a world that comes with
+    this project."""
     shipped = ((each.name, each.description) for each in SHIPPED_WORLDS.values())
-    return [("", "You describe it by hand, or import the files of a command generator."), *shipped]
+    return [
+        ("", "You describe it by hand, or import the files of a command generator."),
+        (EXAMPLES, "You write what people will say next, and mark what may change."),
+        *shipped,
+    ]
 
 
+EXAMPLES = "what people say"
 DESCRIBES = "describe the world"  # the words of the audit log
 NAME_TAKEN = "There is a world of this name already. Choose another name."
 LONGEST_SHOWN = 400  # characters of what another admin has saved
@@ -143,11 +149,11 @@ class NewWorldForm(WorldForm):
     )
 
     def create(self, by: User) -> World | None:
-        """Create the world; one that starts with nothing has no classes of entities either."""
-        self.instance.is_bare = not self.cleaned_data["starts_with"]
+        """Create the world; one that starts with nothing shipped has no classes of entities either."""
+        self.instance.is_bare = self.cleaned_data["starts_with"] not in SHIPPED_WORLDS
         return super().create(by)
 
     def load(self, created: World, by: User) -> Job | None:
-        """Queue the loading of what ``created`` starts with; None where that is nothing."""
-        shipped = self.cleaned_data["starts_with"]
-        return request_load(shipped, created, by) if shipped else None
+        """Queue the loading of what ``created`` starts with; None where it starts empty."""
+        chosen = self.cleaned_data["starts_with"]
+        return request_load(chosen, created, by) if chosen in SHIPPED_WORLDS else None

@@ -33,7 +33,7 @@ from annotations.web.forms import posted
 from annotations.web.sent_texts import MOST_NAMED
 from annotations.web.worlds.downloads import archive_of, file_of
 from annotations.web.worlds.import_forms import WorldArchiveForm
-from annotations.web.worlds.world_forms import DESCRIBES, NewWorldForm, WorldEditForm
+from annotations.web.worlds.world_forms import DESCRIBES, EXAMPLES, NewWorldForm, WorldEditForm
 
 MOST_DIGITS = 19  # of a key that the database takes
 
@@ -65,7 +65,8 @@ def world_new(request: PageRequest) -> HttpResponse:
     if form.is_bound and form.is_valid() and (created := form.create(request.user)):
         if (job := form.load(created, request.user)) is not None:
             return redirect("job", pk=job.pk)
-        return redirect("world", world=created.name)
+        begins_by_example = form.cleaned_data["starts_with"] == EXAMPLES
+        return redirect("by_example" if begins_by_example else "world", world=created.name)
     return render(request, "annotations/worlds/world_new.html", {"form": form})
 
 

@@ -244,8 +244,8 @@ def test_a_world_without_scores_has_no_best_run(world):
 
 def test_an_empty_world_says_what_to_do_first_in_order(world, adam, rene):
     steps = first_steps(counts_of(world), DUTIES[Role.ADMIN])
-    names = ["import", "entity_new", "production_new", "people", "template_new"]
-    assert [step.name for step in steps][:5] == names
+    names = ["import", "by_example", "entity_new", "production_new", "people", "template_new"]
+    assert [step.name for step in steps][:6] == names
     assert [step.name for step in steps if step.is_next] == ["entity_new"]
     page = adam.get("/w/home/").content.decode()
     assert 'class="first-steps"' in page and 'href="/w/home/import/"' in page

@@ -233,7 +233,7 @@ API_POLICY = [
         Rule(f"api:{name}", *annotators(NO_JSON), method="post")
         for name in (
             *("check-template", "check-production", "check-predicate", "suggestions"),
-            *("check-recipe", "check-primitive"),
+            *("check-recipe", "check-primitive", "proposals", "examples"),
         )
     ),
     Rule("api:check-form", *members(NO_JSON), method="post"),

@@ -82,6 +82,11 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "classes_of_household": "post entity-class-household",
     "task_categories": "post task-category-order",
     "entities_new": "post entity-list",
+    "by_example": "post examples",
+    "by_example_preview": "post proposals",
+    "try_examples": NoRoute(
+        "A program stores examples into a world of its own, asks parse/, and deletes that world."
+    ),
     "location_rooms": "patch entity-detail",
     "recipe_preview": "post check-recipe",
     "primitive_preview": "post check-primitive",

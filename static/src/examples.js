@@ -1,0 +1,84 @@
+// The lines of the page By example: [ puts brackets around what is selected, and what the server has made of the lines
+// after a correction takes their place, so that the undo of the browser brings them back.
+import { isCtrlEnter } from "./typing.js";
+
+/** Put `text` into the place between two positions of a field, as if somebody typed it. */
+function write(field, start, end, text) {
+  field.focus({ preventScroll: true });
+  field.setSelectionRange(start, end);
+  const isDone = text ? document.execCommand("insertText", false, text) : document.execCommand("delete");
+  if (isDone) return;
+  field.setRangeText(text, start, end, "end");
+  field.dispatchEvent(new Event("input", { bubbles: true }));
+}
+
+/** Make the text of a field another one by changing what differs alone. */
+function rewrite(field, text) {
+  const before = field.value;
+  let start = 0;
+  while (start < Math.min(before.length, text.length) && before[start] === text[start]) start += 1;
+  let end = 0;
+  const most = Math.min(before.length, text.length) - start;
+  while (end < most && before.at(-1 - end) === text.at(-1 - end)) end += 1;
+  if (before === text) return;
+  const focused = document.activeElement;
+  write(field, start, before.length - end, text.slice(start, text.length - end));
+  if (focused !== document.body) focused.focus({ preventScroll: true });
+}
+
+/** The word around a position, where nothing is selected. */
+function selected(field) {
+  const { selectionStart: start, selectionEnd: end, value } = field;
+  if (start !== end) return [start, end];
+  const before = /[^\s[\]]*$/.exec(value.slice(0, start))[0].length;
+  const behind = /^[^\s[\]]*/.exec(value.slice(start))[0].length;
+  return [start - before, start + behind];
+}
+
+function mark(field) {
+  let [start, end] = selected(field);
+  const text = field.value;
+  while (end > start && /\s/.test(text[end - 1])) end -= 1;
+  while (start < end && /\s/.test(text[start])) start += 1;
+  const chosen = text.slice(start, end);
+  if (chosen && !/[[\]\n]/.test(chosen)) write(field, start, end, `[${chosen}]`);
+  else field.focus();
+}
+
+export function enhance(page) {
+  const lines = page.querySelector("textarea[name=lines]");
+  const said = page.querySelector("[data-examples-try] input[name=said]");
+  page.querySelector("[data-mark]").addEventListener("click", () => mark(lines));
+  lines.addEventListener("keydown", (event) => {
+    if (event.key !== "[" || event.isComposing || lines.selectionStart === lines.selectionEnd) return;
+    event.preventDefault();
+    mark(lines);
+  });
+  said.addEventListener("keydown", (event) => {
+    if (!isCtrlEnter(event) || event.repeat) return;
+    event.preventDefault();
+    if (said.value.trim()) page.querySelector("[data-examples-teach]").click();
+  });
+  page.addEventListener("htmx:afterSwap", () => {
+    const rewritten = page.querySelector("[data-rewritten]");
+    if (!rewritten) return;
+    rewritten.remove();
+    rewrite(lines, rewritten.value);
+  });
+  // What is tried is first in the list, which asks for all of its answers.
+  page.querySelector("[data-examples-try]").addEventListener("submit", (event) => {
+    event.preventDefault();
+    const text = said.value.trim();
+    if (!text) return;
+    const row = document.createElement("li");
+    const sent = Object.assign(document.createElement("input"), { type: "hidden", name: "said", value: text });
+    row.append(sent, text);
+    page.querySelector("#tried > ul").prepend(row);
+    said.value = "";
+    page.querySelector("#tried").dispatchEvent(new Event("renew"));
+  });
+  page.addEventListener("htmx:afterRequest", (event) => {
+    const { elt, successful } = event.detail;
+    if (successful && elt.matches("[data-examples-teach]")) said.value = "";
+  });
+}
