@@ -17,7 +17,7 @@ from annotations.web.worlds import job_pages
 from annotations.web.worlds.world_pages import world_import, world_new
 from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
 from gpsr_site.pages.document_pages import document, document_image, documents
-from gpsr_site.pages.home_pages import banner, favicon, healthz, home, world
+from gpsr_site.pages.home_pages import banner, close_first_steps, favicon, healthz, home, world
 from gpsr_site.pages.search import search
 from parser_service.rest_urls import urlpatterns as parser_routes
 
@@ -63,6 +63,7 @@ urlpatterns = [
     path("jobs/<int:pk>/cancel/", job_pages.job_cancel, name="job_cancel"),
     path("jobs/<int:pk>/answer/", job_pages.job_answer, name="job_answer"),
     path("w/<slug:world>/", world, name="world"),
+    path("w/<slug:world>/first-steps/", close_first_steps, name="first_steps"),
     path("w/<slug:world>/search/", search, name="search"),
     path("w/<slug:world>/", include("annotations.urls")),
     path("w/<slug:world>/", include("parser_service.urls")),

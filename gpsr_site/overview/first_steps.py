@@ -1,10 +1,14 @@
-"""What a new world needs, in order, until a first parser has been scored in it."""
+"""What a new world needs, in order: a list for each way in which a world begins, ticked by what is true."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
-from annotations.models import Duty
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
+from annotations.models import Duty, Entity, Production, TaskCategory, World
+from annotations.rows.composition import split_entry
 from gpsr_site.overview.counts import Counts
 
 WHO = {
@@ -12,6 +16,16 @@ WHO = {
     Duty.ANNOTATE: "an annotator or admin does this",
     Duty.MANAGE: "an admin does this",
 }
+
+
+class Beginning(StrEnum):
+    """How a world began, as its grammar tells: with nothing, with a shipped world, with files, or written here."""
+
+    EMPTY = "empty"
+    COMPETITION = "competition"
+    STARTER = "starter"
+    FILES = "files"
+    WRITTEN = "written"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +37,7 @@ class FirstStep:
     label: str
     name: str
     duty: Duty
-    is_done: bool
+    is_done: bool = False
     is_action: bool = False
     is_optional: bool = False
     is_next: bool = False
@@ -39,77 +53,130 @@ class FirstStep:
         return "" if self.is_allowed else WHO[self.duty]
 
 
-def first_steps(counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
-    """List the steps for somebody with ``duties``; nothing once a run has been evaluated."""
-    if counts.evaluated:
-        return []
-    steps = [
-        FirstStep(
-            "Import the files of a command generator or a competition, if you have them.",
-            "Import files",
-            "import",
-            Duty.MANAGE,
-            bool(counts.productions),
-            is_optional=True,
-        ),
-        FirstStep(
-            "Or write what people say: entities, grammar and templates follow from it.",
-            "Write examples",
-            "by_example",
-            Duty.ANNOTATE,
-            bool(counts.templates),
-            is_optional=True,
-        ),
-        FirstStep(
-            "Name what your robot knows: plants, beds, people.",
-            "Name an entity",
-            "entity_new",
-            Duty.ANNOTATE,
-            bool(counts.entities),
-        ),
-        FirstStep(
-            "Write a grammar: how people say the commands.",
-            "Write a production",
-            "production_new",
-            Duty.ANNOTATE,
-            bool(counts.productions),
-        ),
-        FirstStep(
-            "Invite the people who work on it with you.",
-            "Invite people",
-            "people",
-            Duty.MANAGE,
-            counts.members > 1,
-            is_optional=True,
-        ),
-        FirstStep(
-            "Write templates: each gives the commands of a pattern their logical form.",
-            "Write a template",
-            "template_new",
-            Duty.ANNOTATE,
-            bool(counts.templates),
-        ),
-        FirstStep(
-            "Generate the commands of the templates.",
-            "Generate commands",
-            "generate",
-            Duty.ANNOTATE,
-            bool(counts.commands),
-            is_action=True,
-        ),
-        FirstStep(
-            "Freeze a split into parts to train, validate and test on.",
-            "Freeze a split",
-            "split_new",
-            Duty.ANNOTATE,
-            bool(counts.splits),
-        ),
-        FirstStep(
-            "Train a first parser.", "Start a run", "run_new", Duty.MANAGE, bool(counts.runs)
-        ),
-        FirstStep("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW, False),
-    ]
+def beginning_of(world: World) -> Beginning:
+    """Return how a world began."""
+    sources = {
+        split_entry(entry)[0]
+        for each in TaskCategory.objects.filter(grammar__world=world)
+        for entry in each.rule_sources
+    }
+    if not sources:
+        return Beginning.EMPTY
+    for name, beginning in (
+        ("competition", Beginning.COMPETITION),
+        ("household", Beginning.STARTER),
+    ):
+        if any((SHIPPED_WORLDS[name].folder / source).is_file() for source in sources):
+            return beginning
+    from_files = Production.objects.filter(grammar__world=world, line__gt=0)
+    return Beginning.FILES if from_files.exists() else Beginning.WRITTEN
+
+
+def first_steps(world: World, counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
+    """List the steps of a world for somebody with ``duties``."""
+    steps = list(_steps(world, counts, beginning_of(world)))
     first_open = next((step for step in steps if not (step.is_done or step.is_optional)), None)
     return [
         replace(step, is_next=step is first_open, is_allowed=step.duty in duties) for step in steps
     ]
+
+
+def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[FirstStep]:
+    people = FirstStep(
+        *("Invite the people who work on it with you.", "Invite people", "people", Duty.MANAGE),
+        is_done=counts.members > 1,
+        is_optional=True,
+    )
+    generate = FirstStep(
+        *(
+            "Generate the commands of the templates.",
+            "Generate commands",
+            "generate",
+            Duty.ANNOTATE,
+        ),
+        is_done=bool(counts.commands),
+        is_action=True,
+    )
+    freeze = FirstStep(
+        "Freeze a split into parts to train, validate and test on.",
+        *("Freeze a split", "split_new", Duty.ANNOTATE),
+        is_done=bool(counts.splits),
+    )
+    train = FirstStep(
+        "Train what is recommended here, for what people say in other words.",
+        *("Start a run", "run_new", Duty.MANAGE),
+        is_done=bool(counts.runs),
+    )
+    wrong = FirstStep(
+        *("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW),
+        is_done=bool(counts.evaluated),
+    )
+    ask = FirstStep(
+        "Ask people how they would say the commands, by a link.",
+        *("Start a campaign", "campaign_new", Duty.MANAGE),
+        is_done=bool(counts.paraphrases),
+        is_optional=True,
+    )
+    attempt = FirstStep(
+        *("Say something to it.", "Try a command", "playground", Duty.VIEW), is_optional=True
+    )
+    robot = FirstStep(
+        *("Connect your robot.", "How a robot asks", "robot", Duty.VIEW), is_optional=True
+    )
+    written = FirstStep(
+        "Write templates: each gives the commands of a pattern their logical form.",
+        *("Write a template", "template_new", Duty.ANNOTATE),
+        is_done=bool(counts.templates),
+    )
+    named = FirstStep(
+        "Name what your robot knows: plants, beds, people.",
+        *("Name an entity", "entity_new", Duty.ANNOTATE),
+        is_done=bool(counts.entities),
+    )
+    grammar = FirstStep(
+        "Write a grammar: how people say the commands.",
+        *("Write a production", "production_new", Duty.ANNOTATE),
+        is_done=bool(counts.productions),
+    )
+    files = FirstStep(
+        "Import the files of a command generator or a competition, if you have them.",
+        *("Import files", "import", Duty.MANAGE),
+        is_optional=True,
+    )
+    examples = FirstStep(
+        "Or write what people say: entities, grammar and templates follow from it.",
+        *("Write examples", "by_example", Duty.ANNOTATE),
+        is_done=bool(counts.templates),
+        is_optional=True,
+    )
+    by_hand = (examples, named, grammar, written, generate, attempt)
+    to_the_end = (ask, freeze, train, wrong, robot, people)
+    match beginning:
+        case Beginning.EMPTY:
+            return (files, *by_hand, people)
+        case Beginning.COMPETITION:
+            return (*_of_competition(world), generate, attempt, train, ask, robot, people)
+        case Beginning.STARTER:
+            return (attempt, generate, train, wrong, ask, robot, people)
+        case Beginning.WRITTEN:
+            return (*by_hand, *to_the_end)
+        case Beginning.FILES:
+            return (written, generate, attempt, *to_the_end)
+
+
+def _of_competition(world: World) -> Iterable[FirstStep]:
+    """Return the steps that make the world that of one competition: its folder, and where its locations are."""
+    entities = Entity.objects.filter(ontology__world=world)
+    has_folder = entities.filter(source__endswith=".md").exists()
+    locations = entities.filter(entity_class="location")
+    without_room = any(not each.attributes.get("room") for each in locations)
+    yield FirstStep(
+        "Drop the folder of your competition: its names, rooms, locations and objects.",
+        *("Import the folder", "import_competition", Duty.MANAGE),
+        is_done=has_folder,
+    )
+    yield FirstStep(
+        "Say in which room each location is; names that tell are guessed.",
+        *("Choose rooms", "location_rooms", Duty.ANNOTATE),
+        is_done=has_folder and not without_room,
+    )

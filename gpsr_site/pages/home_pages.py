@@ -10,7 +10,14 @@ from django.templatetags.static import static
 from django.views.decorators.cache import never_cache
 
 from annotations.models import Duty, TaskCategory, World
-from annotations.people.access import PageRequest, WorldRequest, plain_view, world_view
+from annotations.people.access import (
+    NOTHING,
+    WRITE,
+    PageRequest,
+    WorldRequest,
+    plain_view,
+    world_view,
+)
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import Counts, counts_of, counts_of_all
 from gpsr_site.overview.first_steps import first_steps
@@ -53,10 +60,13 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
     others = World.objects.present().exclude(pk=world.pk)
     is_only_world = request.user.is_superuser and not others.exists()
     work = WorkList(world, counts, request.duties, workers_now(), best, jobs, is_only_world)
+    # They close by themselves once a parser has been scored.
+    steps_closed = request.session.get(_steps_key(world), bool(counts.evaluated))
     context = {
         "stages": stages(counts),
         "work_groups": work.groups,
-        "first_steps": first_steps(counts, request.duties),
+        "first_steps": [] if steps_closed else first_steps(world, counts, request.duties),
+        "steps_closed": steps_closed,
         "coverage": TaskCategory.objects.filter(grammar__world=world),
         "measured": newest_answerer_table(world) if counts.splits else None,
         "can_be_measured": counts.splits and (counts.templates or counts.evaluated),
@@ -66,6 +76,17 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
         "recent_runs": world.runs.for_table()[:6],
     }
     return render(request, "gpsr_site/world.html", context)
+
+
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
+def close_first_steps(request: WorldRequest, world: World) -> HttpResponse:
+    """Close the list of first steps for the reader, or show it again."""
+    request.session[_steps_key(world)] = "close" in request.POST
+    return redirect("world", world=world.name)
+
+
+def _steps_key(world: World) -> str:
+    return f"first_steps_closed_{world.pk}"
 
 
 @never_cache

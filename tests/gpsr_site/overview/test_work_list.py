@@ -13,7 +13,6 @@ from annotations.language.corpus import Criterion
 from annotations.language.grammar import Grammar
 from annotations.models import (
     Job,
-    SemanticTemplate,
     Split,
     StoredProblem,
     TaskCategory,
@@ -22,7 +21,6 @@ from annotations.models import (
 from annotations.models.worlds import DUTIES, Role
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import counts_of
-from gpsr_site.overview.first_steps import first_steps
 from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import Workers, workers_now
 from parser_service.models import Evaluation, TrainingRun
@@ -240,37 +238,6 @@ def test_the_best_run_is_of_a_split_by_command_where_there_is_one(sample):
 
 def test_a_world_without_scores_has_no_best_run(world):
     assert best_runs(world) is None
-
-
-def test_an_empty_world_says_what_to_do_first_in_order(world, adam, rene):
-    steps = first_steps(counts_of(world), DUTIES[Role.ADMIN])
-    names = ["import", "by_example", "entity_new", "production_new", "people", "template_new"]
-    assert [step.name for step in steps][:6] == names
-    assert [step.name for step in steps if step.is_next] == ["entity_new"]
-    page = adam.get("/w/home/").content.decode()
-    assert 'class="first-steps"' in page and 'href="/w/home/import/"' in page
-    theirs = rene.get("/w/home/").content.decode()
-    assert 'class="is-next"' in theirs and 'href="/w/home/ontology/new/"' not in theirs
-    assert 'href="/w/home/import/"' not in theirs
-
-
-def test_first_steps_are_over_with_the_first_score(sample):
-    assert first_steps(counts_of(sample.world), DUTIES[Role.ADMIN]) == []
-    SemanticTemplate.objects.all().delete()
-    TrainingRun.objects.all().delete()
-    steps = first_steps(counts_of(sample.world), DUTIES[Role.ANNOTATOR])
-    done = {step.name for step in steps if step.is_done}
-    assert done >= {"import", "entity_new", "production_new"}
-    assert [step.name for step in steps if step.is_next] == ["template_new"]
-
-
-def test_people_are_invited_at_any_time_and_nothing_waits_for_it(world, admin, client):
-    world.memberships.exclude(user=admin).delete()
-    counts, duties = counts_of(world), DUTIES[Role.ADMIN]
-    (people,) = [step for step in first_steps(counts, duties) if step.name == "people"]
-    assert (people.is_ready, people.is_next, people.is_done) == (True, False, False)
-    client.force_login(admin)
-    assert 'href="/w/home/people/"' in client.get("/w/home/").content.decode().partition("<main")[2]
 
 
 def test_only_who_may_add_people_is_told_that_somebody_is_alone(sample, admin, annotator):

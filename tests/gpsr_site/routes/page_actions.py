@@ -68,6 +68,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "people_take_back": NoRoute(
         "It is the button in a message; a program says what it wants instead."
     ),
+    "first_steps": NoRoute("It closes a list on a page, for one reader."),
     # Files, jobs, commands
     "import": "post import",
     "import_competition": "post import-competition",

@@ -186,14 +186,16 @@ POLICY = [
     Rule("entity", *ANNOTATORS, method="post"),
     Rule("download_part", *MEMBERS),
     Rule("entity_class", *MEMBERS),
-    Rule("entity_class", *ANNOTATORS, method="post"),
+    Rule("entity_class", LOG_IN, NOWHERE, 409, NO, 409, method="post"),  # without a version
     Rule("entity_class_new", *ANNOTATORS),
     Rule("classes_of_household", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("entity_class_new", *ANNOTATORS, method="post"),
+    Rule("task_category", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("first_steps", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     *(Rule(name, *MEMBERS) for name in ("recipe", "primitive", "task_category")),
     *(
         Rule(name, *ANNOTATORS, method="post")
-        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview", "task_category")
+        for name in ("recipe", "primitive", "recipe_preview", "primitive_preview")
     ),
     *(Rule(name, *ANNOTATORS) for name in ("recipe_new", "primitive_new", "task_category_new")),
     *(

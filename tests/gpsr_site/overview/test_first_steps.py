@@ -1,0 +1,92 @@
+"""First steps: a list for each beginning, in order, ticked by what is true; closed and found again."""
+
+from __future__ import annotations
+
+import pytest
+
+from annotations.models import Entity, Grammar, Ontology, Production, TaskCategory
+from annotations.models.worlds import DUTIES, Role
+from gpsr_site.overview.counts import counts_of
+from gpsr_site.overview.first_steps import Beginning, beginning_of, first_steps
+
+
+def names_of(world, role=Role.ADMIN):
+    return [each.name for each in first_steps(world, counts_of(world), DUTIES[role])]
+
+
+def test_an_empty_world_says_what_to_do_first_in_order(world, adam, rene):
+    steps = first_steps(world, counts_of(world), DUTIES[Role.ADMIN])
+    names = ["import", "by_example", "entity_new", "production_new", "template_new"]
+    assert names_of(world)[:5] == names
+    assert [step.name for step in steps if step.is_next] == ["entity_new"]
+    page = adam.get("/w/home/").content.decode()
+    assert 'class="first-steps"' in page and 'href="/w/home/import/"' in page
+    theirs = rene.get("/w/home/").content.decode()
+    assert 'class="is-next"' in theirs and 'href="/w/home/ontology/new/"' not in theirs
+
+
+@pytest.mark.parametrize(
+    "source, beginning",
+    [
+        ("category_2025_grammar.txt", Beginning.COMPETITION),
+        ("common_rules.txt as $common", Beginning.STARTER),
+        ("general_grammar.txt", Beginning.WRITTEN),
+    ],
+)
+def test_each_beginning_has_its_own_list(world, source, beginning):
+    grammar, _ = Grammar.objects.get_or_create(world=world)
+    TaskCategory.objects.create(grammar=grammar, name="one", position=0, rule_sources=[source])
+    assert beginning_of(world) == beginning
+    if beginning == Beginning.WRITTEN:
+        Production.objects.create(
+            grammar=grammar, nonterminal="Main", expansion="stop", line=1, position=1_000
+        )
+        assert beginning_of(world) == Beginning.FILES
+    names = names_of(world)
+    assert len(set(names)) == len(names) and {"playground", "robot", "people"} <= set(names)
+
+
+def test_a_competition_wants_its_folder_then_rooms(world):
+    grammar, _ = Grammar.objects.get_or_create(world=world)
+    TaskCategory.objects.create(
+        grammar=grammar, name="2025", position=0, rule_sources=["category_2025_grammar.txt"]
+    )
+
+    def next_step():
+        steps = first_steps(world, counts_of(world), DUTIES[Role.ADMIN])
+        return next(each.name for each in steps if each.is_next)
+
+    assert next_step() == "import_competition"
+    ontology, _ = Ontology.objects.get_or_create(world=world)
+    Entity.objects.all().delete()
+    sofa = Entity.objects.create(
+        ontology=ontology,
+        entity_class="location",
+        text="sofa",
+        source="maps/location_names.md",
+        position=0,
+    )
+    assert next_step() == "location_rooms"
+    sofa.attributes = {"room": "lounge"}
+    sofa.save()
+    assert next_step() == "generate"
+
+
+def test_first_steps_close_with_the_first_score_and_come_back(sample, adam):
+    def is_shown():
+        return 'class="first-steps"' in adam.get("/w/home/").content.decode()
+
+    assert not is_shown()
+    assert adam.post("/w/home/first-steps/", {"open": ""}).status_code == 302
+    assert is_shown()
+    adam.post("/w/home/first-steps/", {"close": ""})
+    assert not is_shown()
+
+
+def test_people_are_invited_at_any_time_and_nothing_waits_for_it(world, admin, client):
+    world.memberships.exclude(user=admin).delete()
+    counts, duties = counts_of(world), DUTIES[Role.ADMIN]
+    (people,) = [step for step in first_steps(world, counts, duties) if step.name == "people"]
+    assert (people.is_ready, people.is_next, people.is_done) == (True, False, False)
+    client.force_login(admin)
+    assert 'href="/w/home/people/"' in client.get("/w/home/").content.decode().partition("<main")[2]
