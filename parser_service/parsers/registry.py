@@ -163,7 +163,7 @@ SHIPPED: dict[str, RegistryEntry] = {
         title="Form ranker",
         description="A fine-tuned sentence encoder chooses among whole forms, by their examples and "
         "by their English glosses; new forms, made from those of the training pairs, are among them.",
-        version=13,
+        version=14,
         protocols=(Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR),
         in_short="Chooses the form that fits best among known and new ones; needs few pairs of each form.",
         loss_unit="nats an utterance",

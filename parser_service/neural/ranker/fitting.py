@@ -249,15 +249,17 @@ class Fitting:
         )
         return novelty
 
-    def _encode_examples(self, check: Check) -> None:
+    def _encode_examples(self, check: Check) -> int:
         training = self._trainings[self._at]
         training.model.encode([each.utterance for each in training.examples], check)
+        return len(training.examples) + len(training.model.glosses.glosses)
 
-    def _encode(self, work: Callable[[Check], None]) -> None:
-        """Do ``work``, which encodes all examples and glosses, and keep how long it takes."""
+    def _encode(self, work: Callable[[Check], int]) -> None:
+        """Do ``work``, which returns how many texts it encodes, and keep how long all of them take."""
         begin = self._clock.now()
-        work(self.observe.check)
-        self._seconds_to_encode = self._clock.now() - begin
+        texts = work(self.observe.check)
+        every = len(self._trainings[-1].examples) + len(self.ranked.glosses)
+        self._seconds_to_encode = (self._clock.now() - begin) * every / texts
 
     def _validate(self, check: Check) -> Report:
         """Encode examples and glosses and weigh the experts; return loss and accuracy on the validation

@@ -59,8 +59,8 @@ class FormRanker(Parser):
     """
 
     name = "ranker"
-    version = 13
-    reads = (10, 11, 12)
+    version = 14
+    reads = (10, 11, 12, 13)
     protocols = (Protocol.STRICT, Protocol.DOMAIN, Protocol.GRAMMAR)
     score_kind = ScoreKind.LOG_PROBABILITY
     Config = RankerConfig

@@ -31,6 +31,7 @@ from parser_service.neural.training import (
 from parser_service.neural.weights import load_tensors
 from parser_service.parsers.hyperparameters.ranker import RankerConfig
 from parser_service.parsers.interface import Check
+from parser_service.parsers.spreading import spread
 from parser_service.parsers.storage import read_json, write_json
 
 WARM_UP = 0.06  # share of the steps over which the rate grows
@@ -38,6 +39,7 @@ LEAST_RATE = 0.02  # share of the rate that is left at the end
 WEIGHT_DECAY = 0.01
 CLIP = 5.0
 REENCODE_EVERY = 16  # steps, for the glosses that carry no gradient
+MOST_AVERAGED = 4096  # examples that prototypes start from, or one of each form
 POOL = 8  # batches sorted by length together: little padding, yet another mix each epoch
 FILES = (TRAINING, TENSORS)
 GLOSSES = "glosses"  # the name of their vectors in a checkpoint
@@ -130,13 +132,18 @@ class RankerTraining:
         ]
         self.optimizer = torch.optim.AdamW(groups, weight_decay=WEIGHT_DECAY, fused=True)
 
-    def start(self, check: Check) -> None:
-        """Give each prototype the mean of the encoded examples, and encode the glosses."""
+    def start(self, check: Check) -> int:
+        """Give each prototype the mean of encoded examples, and encode the glosses; return how many texts that were.
+
+        Of very many examples, some of each form are enough for a vector that training changes.
+        """
+        most = max(MOST_AVERAGED, self.model.nearest.number)
+        some = spread(self.examples, most, lambda example: example.form)
         with reduced_precision(self.model, self.config.precision):
-            texts = [example.utterance for example in self.examples]
-            vectors = self.model.encoder.vectors(texts, check)
-            self.prototypes.start_from(vectors, [example.form for example in self.examples])
+            vectors = self.model.encoder.vectors([example.utterance for example in some], check)
+            self.prototypes.start_from(vectors, [example.form for example in some])
             self.model.glosses.encode(self.model.encoder, check)
+        return len(some) + len(self.model.glosses.glosses)
 
     def continue_from(self, earlier: RankerTraining) -> None:
         """Let AdamW keep what it knows of the encoder that both train: without its moments, the first steps

@@ -3,10 +3,11 @@
 from dataclasses import replace
 
 import pytest
+import torch
 
 from parser_service.neural.ranker import ranked_forms
 from parser_service.neural.ranker.form_ranker import FormRanker
-from parser_service.neural.ranker.steps import plan
+from parser_service.neural.ranker.steps import RankerTraining, plan
 from parser_service.parsers.interface import Cancelled, Observer, Pair
 from tests.parser_service.neural.conftest import Recorder
 from tests.parser_service.neural.ranker.sample_domain import utterances
@@ -74,6 +75,23 @@ def test_of_very_many_glosses_some_are_encoded_again_each_time(learned, monkeypa
     for turn in range(-(-len(whole) // 4)):
         model.glosses.refresh(model.encoder, turn)
     assert (model.glosses.vectors - whole).abs().max() < 1e-5
+
+
+def test_of_very_many_examples_prototypes_start_from_some_of_each_form(config, pairs, monkeypatch):
+    starts = []
+    start = RankerTraining.start
+
+    def note(training, check):
+        texts = start(training, check)
+        starts.append((texts, training.prototypes.prototypes.detach().norm(dim=-1)))
+        return texts
+
+    monkeypatch.setattr("parser_service.neural.ranker.steps.MOST_AVERAGED", 12)
+    monkeypatch.setattr(RankerTraining, "start", note)
+    FormRanker(replace(config, steps=4, forms="closed")).fit(pairs)
+    [(texts, lengths)] = starts
+    assert texts == 12 + len(lengths)
+    assert torch.allclose(lengths, torch.ones(8))
 
 
 class Impatient(Observer):
