@@ -99,11 +99,13 @@ def read_generator(
 def classes_to_read(world: World | None, names: Iterable[str]) -> EntityClasses:
     """Return the classes that files of these names may use in ``world``, which an import then stores.
 
-    A world by hand has its own alone. Those of GPSRCmdGen come with its files of entities, and to a world without any.
+    A world by hand has its own alone, and so has a folder that declares its own. Those of GPSRCmdGen come with its
+    files of entities, and to a world without any.
     """
     own = classes_of(world) if world else EntityClasses(())
+    there = {name.lower() for name in names}
     of_household = {*ONTOLOGY_FILES} - {CLASSES_FILE, ENTITIES_FILE}
-    if own.rows and of_household.isdisjoint(name.lower() for name in names):
+    if (own.rows or CLASSES_FILE in there) and of_household.isdisjoint(there):
         return own
     return DEFAULT_CLASSES.with_rows(own)
 

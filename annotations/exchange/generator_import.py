@@ -106,7 +106,7 @@ def _compare_and_store(
     coverage = count_coverage(generator.texts.categories(), known_commands(world))
     progress.report(0.8, "writing")
     with prepared as productions, progress.writing():
-        world = lock_world(report.world, by)
+        world = lock_world(report.world, by, is_bare=True)  # the files say which classes it has
         changes = store(world, generator, productions, by, brings_back)
         # The grammar is not that of the files where lines were left out or people have changed a task category.
         if report.left_out.productions or apart.has_own_categories:

@@ -120,9 +120,8 @@ class World(models.Model):
         declared: dict[str, Predicate]  # where ``form_presentation`` keeps them
         classes: EntityClasses
 
-    is_bare = (
-        False  # of a new one: whether it is begun by hand, where imports bring classes of entities
-    )
+    # Whether a new one has no classes of entities: it is begun by hand, or by files that bring them.
+    is_bare = False
 
     objects = WorldQuerySet.as_manager()
 

@@ -139,27 +139,31 @@ def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[First
         is_done=bool(counts.productions),
     )
     files = FirstStep(
-        "Import the files of a command generator or a competition, if you have them.",
+        "Or import the files of a command generator or a competition.",
         *("Import files", "import", Duty.MANAGE),
         is_optional=True,
     )
     examples = FirstStep(
-        "Or write what people say: entities, grammar and templates follow from it.",
+        "Write what people say: entities, grammar and templates follow from it.",
         *("Write examples", "by_example", Duty.ANNOTATE),
         is_done=bool(counts.templates),
+    )
+    by_hand = FirstStep(
+        "Or write it by hand: what the robot knows, then a grammar, then templates.",
+        *("Name an entity", "entity_new", Duty.ANNOTATE),
+        is_done=bool(counts.entities),
         is_optional=True,
     )
-    by_hand = (examples, named, grammar, written, generate, attempt)
     to_the_end = (ask, freeze, train, wrong, robot, people)
     match beginning:
         case Beginning.EMPTY:
-            return (files, *by_hand, people)
+            return (examples, files, by_hand, attempt, people)
         case Beginning.COMPETITION:
             return (*_of_competition(world), generate, attempt, train, ask, robot, people)
         case Beginning.STARTER:
             return (attempt, generate, train, wrong, ask, robot, people)
         case Beginning.WRITTEN:
-            return (*by_hand, *to_the_end)
+            return (named, grammar, written, generate, attempt, *to_the_end)
         case Beginning.FILES:
             return (written, generate, attempt, *to_the_end)
 

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import json
+import re
+from pathlib import Path
 
 import pytest
 
 from annotations.exchange.generator_export import generator_files
 from annotations.exchange.generator_import import import_generator
 from annotations.exchange.world_import import import_world
+from annotations.generation.generating import generate_pairs
 from annotations.language.forms import DEFAULT_CLASSES
 from annotations.models import Production, SemanticTemplate, TaskCategory, World
 from annotations.rows.from_rows import classes_of
 from tests.annotations.exchange.packing import members_of, pack, pack_members
 
+GUIDE = Path(__file__).parents[2] / "docs" / "guides" / "by-hand.md"
+FILES = (
+    *("greenhouse_grammar.txt", "greenhouse_semantics.txt"),
+    *("classes.xml", "entities.xml", "predicates.json"),
+)
 MAIN = {"nonterminal": "Main", "expansion": "go to the {room}"}
 GO = {"pattern": "go to the {room}", "form": "(go {room})"}
 
@@ -350,4 +358,20 @@ def test_an_archive_that_uses_a_class_without_its_row_has_it(tiny_world):
     import_world("moved", pack_members({**moved, "rows/entity_classes.jsonl": name}))
     assert {"object", "category", "room", "location"} <= {
         *classes_of(World.objects.get(name="moved")).tokens
+    }
+
+
+def test_the_folder_of_the_guide_is_a_world(db, tmp_path):
+    texts = re.findall(r"^```text\n(.*?)^```", GUIDE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    for name, text in zip(FILES, texts, strict=True):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    report = import_generator("greenhouse", tmp_path)
+    assert not report.problems
+    world = World.objects.get(name="greenhouse")
+    assert {each.token for each in classes_of(world)} == {"plant", "bed"}
+    assert names(world) == ["greenhouse"]
+    generate_pairs(world)
+    assert {row.anonymized_text for row in world.commands.all()} == {
+        *("water the <plant> in <bed>", "give some water to the <plant> in <bed>"),
+        "go to <bed>",
     }
