@@ -80,7 +80,7 @@ class ProposedTemplateSerializer(serializers.Serializer[Any]):
     lines = lines_of_numbers()
 
 
-class OfferSerializer(serializers.Serializer[Any]):
+class OfferedLineSerializer(serializers.Serializer[Any]):
     """A line that people may say, too. It counts once it is sent with the others."""
 
     line = serializers.CharField()
@@ -88,7 +88,7 @@ class OfferSerializer(serializers.Serializer[Any]):
     predicate = serializers.CharField()
 
 
-class DoubtSerializer(serializers.Serializer[Any]):
+class OpenQuestionSerializer(serializers.Serializer[Any]):
     """Two classes, or predicates, that may be one. ``comment`` is the line that says that they are not."""
 
     kind = serializers.ChoiceField(choices=["class", "predicate"])
@@ -105,8 +105,8 @@ class ProposalSerializer(serializers.Serializer[Any]):
     predicates = ProposedPredicateSerializer(many=True)
     productions = ProposedProductionSerializer(many=True)
     templates = ProposedTemplateSerializer(many=True)
-    offers = OfferSerializer(many=True)
-    doubts = DoubtSerializer(many=True)
+    offers = OfferedLineSerializer(many=True)
+    doubts = OpenQuestionSerializer(many=True)
     understood = lines_of_numbers()
 
 
