@@ -40,7 +40,9 @@ class ExampleLines(Fields):
     """Commands, with marks around what may change: ``water the [tomatoes] in [bed two]``."""
 
     lines = serializers.ListField(
-        child=LineField(max_length=MOST_CHARACTERS, allow_blank=True), max_length=MOST_LINES
+        child=LineField(max_length=MOST_CHARACTERS, allow_blank=True),
+        max_length=MOST_LINES,
+        help_text="What people say; an empty one and one that begins with # are no examples.",
     )
 
 
