@@ -81,7 +81,7 @@ class GrammarOracle(Parser):
         self._categories = tuple(self.knowledge.grammar or ())
         self._chart = TemplateChart(self._categories)
         ontology = self.knowledge.ontology or Ontology(())
-        self.reader = HearingReader(ontology, self._chart.vocabulary)
+        self.reader = HearingReader(ontology, self.vocabulary)
 
     def fit(
         self,
@@ -132,6 +132,11 @@ class GrammarOracle(Parser):
             if found:
                 return list(found.values()), looked_at
         return [], looked_at
+
+    @property
+    def vocabulary(self) -> frozenset[str]:
+        """The words of all commands."""
+        return self._chart.vocabulary
 
     def understands(self, utterance: str) -> bool:
         """Return whether an utterance is one command."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
 from threading import Lock
 
+from annotations.language.forms import Form, Symbols
 from annotations.language.grounding import Anonymizer
 from annotations.language.induction import category_of, propose, with_proposal
 from annotations.language.plans import Lookup, StoppingWords, usual_places
@@ -17,7 +17,7 @@ from parser_service.serving.action_naming import names_of
 from parser_service.serving.answer_writing import AnswerWriter
 from parser_service.serving.answerer import Answerer, LoadedParser
 from parser_service.serving.batching import Batcher
-from parser_service.serving.preparing import LearnedUse, WorldLanguage, derive
+from parser_service.serving.preparing import LearnedUse, WorldLanguage, derive, learned_use
 
 
 def answerer_with(world: World, text: str) -> Answerer | None:
@@ -36,6 +36,10 @@ def answerer_with(world: World, text: str) -> Answerer | None:
     predicates = {**known.predicates, **proposed}
     oracle = GrammarOracle(knowledge=Knowledge(predicates, ontology, categories))
     lookup = Lookup(ontology, predicates)
+
+    def derivations() -> tuple[tuple[Symbols, Form], ...]:
+        return (*learned_use(world).derivations, *derive([category_of(proposal)]))
+
     language = WorldLanguage(
         ontology,
         predicates,
@@ -44,7 +48,7 @@ def answerer_with(world: World, text: str) -> Answerer | None:
         names_of(world),
         recipe_book_of(world),
         usual_places(ontology, lookup),
-        LearnedUse(partial(derive, categories), predicates, ontology.classes),
+        LearnedUse(derivations, predicates, ontology.classes),
     )
     part = LoadedParser(
         run=None,
@@ -55,5 +59,5 @@ def answerer_with(world: World, text: str) -> Answerer | None:
         batcher=Batcher(oracle.predict, Lock()),
         parser=oracle,
     )
-    stopping = StoppingWords(ontology, language.use.vocabulary)
+    stopping = StoppingWords(ontology, oracle.vocabulary)
     return Answerer(world.name, AnswerWriter(language), oracle.reader, stopping, oracle=part)

@@ -59,11 +59,28 @@ export function enhance(page) {
     event.preventDefault();
     if (said.value.trim()) page.querySelector("[data-examples-teach]").click();
   });
+  // The lines that come back with their proposal need no other one.
+  let isRewriting = false;
+  lines.form.addEventListener("input", () => isRewriting || lines.form.dispatchEvent(new Event("typed")));
+  let begun = null; // what somebody writes in a field of the proposal while another proposal comes
+  page.addEventListener("htmx:beforeSwap", () => {
+    const field = document.activeElement;
+    const isBegun = field.matches("#proposal input") && field.value !== field.defaultValue;
+    begun = isBegun ? { label: field.ariaLabel, value: field.value } : null;
+  });
   page.addEventListener("htmx:afterSwap", () => {
     const rewritten = page.querySelector("[data-rewritten]");
-    if (!rewritten) return;
-    rewritten.remove();
-    rewrite(lines, rewritten.value);
+    if (rewritten) {
+      rewritten.remove();
+      isRewriting = true;
+      rewrite(lines, rewritten.value);
+      isRewriting = false;
+    }
+    const field = begun && page.querySelector(`#proposal input[aria-label="${CSS.escape(begun.label)}"]`);
+    if (field && field.value === field.defaultValue) {
+      field.value = begun.value;
+      field.focus();
+    }
   });
   // What is tried is first in the list, which asks for all of its answers.
   page.querySelector("[data-examples-try]").addEventListener("submit", (event) => {

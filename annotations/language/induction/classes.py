@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count, product
+from string import ascii_lowercase
 from typing import TypeAlias
 
 from annotations.language.induction.marked_lines import Mark
 from annotations.language.texts import NUMBERS, singular
 
 UNNAMED = "thing"  # the token of a class whose name nothing says
-_LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 Evidence: TypeAlias = "tuple[str, ...]"
 
@@ -68,11 +69,7 @@ def classes_of(
     for marks, evidence in groups:
         said = next((each[1] for each in evidence if each[0] == "said"), "")
         proposed = said or _shared_word(marks)
-        token = proposed or next(
-            each
-            for each in (UNNAMED, *(f"{UNNAMED}_{letter}" for letter in _LETTERS))
-            if each not in taken
-        )
+        token = proposed or next(each for each in _unnamed_tokens() if each not in taken)
         taken.add(token)
         tokens |= dict.fromkeys(marks, token)
         here = [each for each in places if each.mark in marks]
@@ -84,6 +81,13 @@ def classes_of(
             MarkedClass(token, tuple(texts.values()), lines, bool(proposed), tuple(evidence))
         )
     return tokens, tuple(found)
+
+
+def _unnamed_tokens() -> Iterator[str]:
+    yield UNNAMED
+    for length in count(1):
+        for letters in product(ascii_lowercase, repeat=length):
+            yield f"{UNNAMED}_{''.join(letters)}"
 
 
 def folded(text: str) -> str:

@@ -30,8 +30,9 @@ from annotations.language.texts import (
     require_name,
 )
 
-MOST_LINES = 500
+MOST_LINES = 200
 MOST_CHARACTERS = 500  # of one line
+MOST_PARTS = 30  # words and marks of one line: what two lines share is found in time that grows with their product
 EXAMPLE = "water the [tomatoes] in [bed two]"
 
 _MARK = re.compile(r"\[(?P<text>[^\[\]]*)\](?:\((?P<token>[^()]*)\))?|[^\s\[\]]+|[\[\]]")
@@ -130,6 +131,10 @@ def read_example(line: str, position: Position | None = None) -> Example:
     parts = tuple(_parts(said, place))
     if all(part == "," for part in parts):
         raise LanguageError("the line says nothing", place, f"write a command, as in: {EXAMPLE}")
+    if len(parts) > MOST_PARTS:
+        raise LanguageError(
+            f"the line has {len(parts):,} words and marks", place, f"{MOST_PARTS} is the limit"
+        )
     written = _MARK.sub(lambda match: match[0] if match["text"] is None else match["text"], said)
     example = Example(_without_courtesy(parts), line=place.line, said=" ".join(written.split()))
     return (

@@ -40,7 +40,9 @@ class ExampleLines(Fields):
     """Commands, with marks around what may change: ``water the [tomatoes] in [bed two]``."""
 
     lines = serializers.ListField(
-        child=LineField(max_length=MOST_CHARACTERS, allow_blank=True), max_length=MOST_LINES
+        child=LineField(max_length=MOST_CHARACTERS, allow_blank=True),
+        max_length=MOST_LINES,
+        help_text="What people say; an empty one and one that begins with # are no examples.",
     )
 
 
@@ -80,7 +82,7 @@ class ProposedTemplateSerializer(serializers.Serializer[Any]):
     lines = lines_of_numbers()
 
 
-class OfferSerializer(serializers.Serializer[Any]):
+class OfferedLineSerializer(serializers.Serializer[Any]):
     """A line that people may say, too. It counts once it is sent with the others."""
 
     line = serializers.CharField()
@@ -88,7 +90,7 @@ class OfferSerializer(serializers.Serializer[Any]):
     predicate = serializers.CharField()
 
 
-class DoubtSerializer(serializers.Serializer[Any]):
+class OpenQuestionSerializer(serializers.Serializer[Any]):
     """Two classes, or predicates, that may be one. ``comment`` is the line that says that they are not."""
 
     kind = serializers.ChoiceField(choices=["class", "predicate"])
@@ -105,8 +107,8 @@ class ProposalSerializer(serializers.Serializer[Any]):
     predicates = ProposedPredicateSerializer(many=True)
     productions = ProposedProductionSerializer(many=True)
     templates = ProposedTemplateSerializer(many=True)
-    offers = OfferSerializer(many=True)
-    doubts = DoubtSerializer(many=True)
+    offers = OfferedLineSerializer(many=True)
+    doubts = OpenQuestionSerializer(many=True)
     understood = lines_of_numbers()
 
 

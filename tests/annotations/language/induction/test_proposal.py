@@ -153,3 +153,20 @@ def test_the_oracle_of_a_proposal_understands_every_line(written: list[str]) -> 
 def test_odd_lines_make_something_or_a_problem(line: str) -> None:
     proposal = propose(line)
     assert proposal.problems or proposal.templates
+
+
+def test_very_many_classes_without_a_name_have_tokens() -> None:
+    proposal = propose("\n".join(f"w{n} [x{n}]" for n in range(60)))
+    assert len({each.token for each in proposal.classes}) == 60
+
+
+def test_a_doubt_that_is_denied_is_not_asked_again() -> None:
+    lines = "water the [roses] in [bed two]\nirrigate the [roses] in [bed two]\ngo in the [shed]"
+    doubts = propose(lines).doubts
+    assert {each.kind for each in doubts} == {"predicate", "class"}
+    assert not propose("\n".join([lines, *(each.comment for each in doubts)])).doubts
+
+
+@pytest.mark.parametrize("line", ["say <b> to [x]", "give $5 to [x]", "go " * 40])
+def test_what_no_template_can_say_is_refused(line: str) -> None:
+    assert propose(line).problems and not propose(line).templates
