@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from time import monotonic
+from functools import partial
 from typing import Any
 
 from django.db.models import Count
@@ -17,12 +17,11 @@ from annotations.language.corpus import expected_vocabulary, vocabulary_growth
 from annotations.language.texts import folded_words
 from annotations.models import Campaign, World
 from annotations.models.campaigns import ContributorKind
-from annotations.showing.kept import MOST_COUNTED, Kept
+from annotations.rows.kept import keep
 
 TARGET_PER_FORM, MOST_WANTED = 10, 1_000
 SAMPLE = 100  # paraphrases whose vocabulary is compared
 MOST_POINTS = 40  # of a curve
-MOST_KEPT = 16  # figures of worlds and campaigns that a process keeps
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,18 +145,9 @@ def figures_of(world: World, campaign: Campaign | None = None) -> ParaphraseFigu
     A form is short where it has fewer than the target of the campaign, or ``TARGET_PER_FORM``, counting
     the paraphrases of the world. Figures of very many paraphrases are kept for a while.
     """
-    key = (world.pk, campaign.pk if campaign else None, target_of(campaign))
-    kept = _kept.get(key)
-    if kept and not kept.is_due():
-        return replace(kept.value, age=kept.age)
-    began = monotonic()
-    figures = _count(world, campaign)
-    if figures.count > MOST_COUNTED:
-        _kept.pop(key, None)
-        _kept[key] = Kept(figures, began, monotonic() - began)
-        while len(_kept) > MOST_KEPT:
-            _kept.pop(next(iter(_kept)), None)
-    return figures
+    key = ("paraphrase figures", world.pk, campaign and campaign.pk, target_of(campaign))
+    found = keep(key, partial(_count, world, campaign), lambda figures: figures.count)
+    return replace(found.value, age=found.age)
 
 
 def _count(world: World, campaign: Campaign | None) -> ParaphraseFigures:
@@ -188,10 +178,6 @@ def _count(world: World, campaign: Campaign | None) -> ParaphraseFigures:
         target=target_of(campaign),
         sample=sample,
     )
-
-
-# By world, campaign and target; the one that was counted longest ago comes first.
-_kept: dict[tuple[int, int | None, int], Kept[ParaphraseFigures]] = {}
 
 
 def target_of(campaign: Campaign | None) -> int:

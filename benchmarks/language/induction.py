@@ -158,8 +158,11 @@ def paraphrase_pairs() -> tuple[dict[str, str], list[Collection[str]]]:
     anonymizer = Anonymizer(read_ontology(files)[0])
     lines = (DATA / "walker2019" / "para" / "train.txt").read_text(encoding="utf-8").splitlines()
     texts = zip(lines[::2], lines[1::2], strict=True)
+    pairs = {anonymizer.anonymize(said).command: form for said, form in texts}
     return {
-        anonymizer.anonymize(said).command: canonical_text(read_form(form)) for said, form in texts
+        command: canonical_text(read_form(form))
+        for command, form in pairs.items()
+        if not any(word.startswith("<") and not word.endswith(">") for word in command.split())
     }, []
 
 
@@ -215,8 +218,10 @@ def line_of(command: str, form_text: str) -> str:
 
 
 def without_courtesy(command: str) -> str:
-    """Return the words of a command as examples have them."""
-    return " ".join(map(str, read_example(command).parts))
+    """Return a command with class tokens as examples have it."""
+    marked = (f"[{word}]({word[1:-1]})" if is_slot(word) else word for word in command.split())
+    parts = read_example(" ".join(marked)).parts
+    return " ".join(part if isinstance(part, str) else part.text for part in parts)
 
 
 def is_slot(word: str) -> bool:

@@ -50,7 +50,7 @@ from annotations.models import (
 from annotations.models.background import Status as RunStatus
 from annotations.models.corpus import ParaphraseStatus
 from annotations.models.description import ProblemSubject, TemplateStatus
-from annotations.showing.kept import MOST_COUNTED, Kept
+from annotations.rows.kept import MOST_READ, Kept
 from parser_service.models import Promotion, TrainingRun
 
 # What a world may have very many of.
@@ -127,7 +127,7 @@ class Counts:
 Stamp = tuple[int, int]  # how often commands were generated, and the newest job that has ended
 
 
-# ``LARGE`` of the worlds with more than MOST_COUNTED rows, by key.
+# ``LARGE`` of the worlds with more than MOST_READ rows, by key.
 _kept: dict[int, Kept[dict[str, int]]] = {}
 _in_hand: set[int] = set()  # the keys of those that a thread counts anew; others take what is kept
 
@@ -176,7 +176,7 @@ def _large_numbers(stamps: dict[int, Stamp]) -> dict[int, Kept[dict[str, int]]]:
         numbers = counted.get(key) or dict.fromkeys(LARGE, 0)  # deleted this moment
         rows = sum(numbers.values())
         large[key] = Kept(numbers, began, seconds * rows / max(total, 1), stamps[key])
-        if rows > MOST_COUNTED:
+        if rows > MOST_READ:
             _kept[key] = large[key]
         else:
             _kept.pop(key, None)

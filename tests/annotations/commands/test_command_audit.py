@@ -13,6 +13,7 @@ from django.utils import timezone
 import annotations.management.commands
 import gpsr_site.management.commands
 import parser_service.management.commands
+from annotations.generation.split_statistics import store_figures
 from annotations.management.base import ReportingCommand
 from annotations.models import AuditEntry, User, World
 from annotations.people.audit_log import prune
@@ -103,6 +104,7 @@ def test_a_run_and_its_promotion(world, transactional_db, settings, tmp_path):
     known = split.examples.get(part="train", source="paraphrased", position=1)
     asked = split.examples.filter(part="validation")
     asked.update(utterance=known.utterance, logical_form=known.logical_form)
+    store_figures(split)
     report, _ = run("train", "knn", "--world", "home", "--split", "home", "--sources", "gen,para")
     promoted = promoted_run(world)
     assert promoted is not None and report["status"] == "succeeded"

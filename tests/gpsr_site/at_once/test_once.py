@@ -16,6 +16,7 @@ from django.db import transaction
 from django.test import Client
 
 from annotations.generation.freezing import freeze_split
+from annotations.generation.split_statistics import store_figures
 from annotations.labelling.audit_findings import store_findings
 from annotations.labelling.label_answers import label
 from annotations.labelling.label_decisions import decide
@@ -285,6 +286,7 @@ def test_the_first_run_of_a_world_is_promoted_once(transactional_db, world):
     split = make_split(world)
     known = split.examples.filter(part="train").first().logical_form
     split.examples.filter(part="validation").update(logical_form=known)
+    store_figures(split)
     runs = [trained_run(split, seed=seed, spoken=0.8) for seed in range(6)]
     at_once(*(partial(consider, run) for run in runs))
     assert Promotion.objects.promoted().count() == 1

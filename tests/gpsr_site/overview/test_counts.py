@@ -13,7 +13,7 @@ from annotations.labelling.enqueuing import WantedItem, enqueue
 from annotations.labelling.label_answers import label, take_back_label
 from annotations.models import Job, Verdict, WorkItem, WorkKind, World
 from annotations.models.background import Status
-from annotations.showing import kept
+from annotations.rows import kept
 from gpsr_site.overview import counts
 from gpsr_site.overview.counts import LARGE, counts_of, counts_of_all
 from tests.sample_world import paraphrase_in
@@ -31,7 +31,7 @@ def _nothing_kept():
 @pytest.fixture
 def large(sample, monkeypatch):
     """A world whose numbers are kept for as long as nothing of the clock or the jobs says otherwise."""
-    monkeypatch.setattr(counts, "MOST_COUNTED", 0)
+    monkeypatch.setattr(counts, "MOST_READ", 0)
     monkeypatch.setattr(kept, "SHARE", 1_000_000)
     monkeypatch.setattr(kept, "SHARE_AFTER_CHANGE", 0)
     collect(sample.world, ["would you find me the tea", "go to the kitchen"])
@@ -130,7 +130,7 @@ def test_while_one_thread_counts_others_take_what_is_kept(large, monkeypatch):
 def test_a_large_world_beside_small_ones_alone_is_kept(
     large, other_sample, monkeypatch, django_assert_num_queries
 ):
-    monkeypatch.setattr(counts, "MOST_COUNTED", 10_000)
+    monkeypatch.setattr(counts, "MOST_READ", 10_000)
     with django_assert_num_queries(2):
         assert counts_of_all(World.objects.all())[large.pk].utterances == 2
     assert set(counts._kept) == {large.pk}
@@ -145,7 +145,7 @@ def test_the_rail_says_how_old_a_number_is_once_that_is_minutes(large, annotator
 
     assert not any(said().values())
     now = counts._kept[large.pk]
-    counts._kept[large.pk] = replace(now, counted_at=now.counted_at - 200, seconds=1e6)
+    counts._kept[large.pk] = replace(now, computed_at=now.computed_at - 200, seconds=1e6)
     told = said()
     assert "3" in told["Utterances"]
     assert not told["Splits"]

@@ -79,10 +79,9 @@ def test_more_rows_cost_no_page_more(sample, client_as, subtests, monkeypatch):
     monkeypatch.setattr(kept, "_kept", OrderedDict())
     monkeypatch.setattr(kept, "MOST_READ", 0)
     monkeypatch.setattr(counts, "_kept", {})
-    monkeypatch.setattr(counts, "MOST_COUNTED", 0)
-    for module in (counts, kept):
-        monkeypatch.setattr(module, "SHARE", 10**9)
-        monkeypatch.setattr(module, "MOST_SECONDS", 10**9)
+    monkeypatch.setattr(counts, "MOST_READ", 0)
+    monkeypatch.setattr(kept, "SHARE", 10**9)
+    monkeypatch.setattr(kept, "MOST_SECONDS", 10**9)
     monkeypatch.setattr(counts, "MOST_EXACT", FEW // 3)
     client, many = client_as("admin"), ManyRows(sample.world)
     pages = {name: address(name, sample) for name in GET_ROUTES}
