@@ -9,6 +9,7 @@ from annotations.editing.row_versions import MOST_SHOWN, history_of_row
 from annotations.labelling.collecting import collect
 from annotations.models import Entity, Predicate, Production, SemanticTemplate
 from annotations.rows.row_kinds import KINDS
+from tests.gpsr_site.routes.sample_rows import task_category
 from tests.notices import levels
 from tests.sample_world import guidelines_in, own_class_in, paraphrase_in, unused_primitive_in
 
@@ -56,6 +57,7 @@ def test_what_was_deleted_is_listed_and_restored(kind, sample, anna, admin):
     collect(sample.world, ["find the tea"])
     own_class_in(sample.world)
     unused_primitive_in(sample.world)
+    task_category(sample)
     row = kind.rows_of(sample.world).last()
     listed = f"/w/home/history/{kind.name}/deleted/"
     assert not anna.get(listed).context["entries"]
@@ -75,6 +77,7 @@ LISTS = {
     "production": "grammar",
     "entity": "ontology",
     "entity_class": "ontology/classes",
+    "task_category": "grammar/categories",
     "predicate": "predicates",
     "paraphrase": "paraphrases",
     "utterance": "utterances",
