@@ -28,11 +28,13 @@ function rewrite(field, text) {
 
 /** The word around a position, where nothing is selected. */
 function selected(field) {
-  const { selectionStart: start, selectionEnd: end, value } = field;
+  let { selectionStart: start, selectionEnd: end } = field;
   if (start !== end) return [start, end];
-  const before = /[^\s[\]]*$/.exec(value.slice(0, start))[0].length;
-  const behind = /^[^\s[\]]*/.exec(value.slice(start))[0].length;
-  return [start - before, start + behind];
+  const text = field.value;
+  const isWord = (letter) => letter !== undefined && !/[\s[\]]/.test(letter);
+  while (isWord(text[start - 1])) start -= 1;
+  while (isWord(text[end])) end += 1;
+  return [start, end];
 }
 
 function mark(field) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from http import HTTPStatus
 from typing import Any
 
 from drf_spectacular.utils import extend_schema
@@ -63,6 +64,10 @@ class TaskCategoryViewSet(NounViewSet):
     change_serializer = TaskCategoryChange
     sorts = {"position": "position", "name": "name", "id": "pk"}
     duties = {**NounViewSet.duties, "order": Duty.ANNOTATE}
+
+    def _written(self, row: Any, remarks: Any, status: int = HTTPStatus.OK) -> Response:
+        row.refresh_from_db(fields=["commands_in_grammar", "commands_with_form"])  # counted anew
+        return super()._written(row, remarks, status)
 
     @extend_schema(request=OrderOfCategories, responses={200: TaskCategorySerializer(many=True)})
     @action(detail=False, methods=["post"])
