@@ -63,13 +63,14 @@ class TemplateForm(NounForm):
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
         self.checked: CheckedTemplate | None = None
-        row_field(self, "task_category").queryset = TaskCategory.objects.filter(
-            grammar__world=world
-        )
-        n_categories = TaskCategory.objects.filter(grammar__world=world).count()
-        if n_categories < 2 and self.row is None:  # there is nothing to choose
+        categories = TaskCategory.objects.filter(grammar__world=world)
+        row_field(self, "task_category").queryset = categories
+        first_two = categories[:2]
+        if len(first_two) < 2 and self.row is None:  # there is nothing to choose
             self.fields["task_category"].required = False
             self.fields["task_category"].widget = forms.HiddenInput()
+            # The editor asks for the completions of this one.
+            self.initial.setdefault("task_category", next(iter(first_two), None))
         if self.row is not None:  # it stays where it is
             self.fields["task_category"].required = False
             self.fields[
