@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from annotations.generation.split_statistics import store_figures
 from annotations.language.texts.errors import Refusal
 from annotations.models import Split, World
 from parser_service.models import Promotion, TrainingRun
@@ -30,6 +31,7 @@ def known_split(world: World, name: str = "home", new: int = 0) -> Split:
     split.examples.filter(pk__in=asked[new:]).update(logical_form=known)
     for number, pk in enumerate(asked[:new]):
         split.examples.filter(pk=pk).update(logical_form=f"( new{number} )")
+    store_figures(split)
     return split
 
 
@@ -183,6 +185,7 @@ def test_a_parser_that_writes_no_new_form_is_not_promoted_where_a_third_is_new(w
         strict=False,
     ):
         split.examples.filter(pk=pk).update(logical_form=form)
+    store_figures(split)
     run = trained_run(split, spoken=0.9)
     assert (consider(run) is not None) == (new < 4)
     Promotion.objects.all().delete()
@@ -263,6 +266,7 @@ def test_training_considers_the_run(world, transactional_db):
     known = split.examples.get(part="train", source="paraphrased", position=1)
     asked = split.examples.filter(part="validation")
     asked.update(utterance=known.utterance, logical_form=known.logical_form)
+    store_figures(split)
     run, _ = run_requests.request(world, split, "knn", train_sources="gen+para", send=False)
     train(lifecycle.claim("the test", run.queue, run))
     assert promoted_run(world) == run
