@@ -70,6 +70,12 @@ def test_the_services_are_commands_of_this_project():
         )
 
 
+@pytest.mark.parametrize("name", OURS)
+def test_what_lasts_is_started_again(name):
+    lasts = OURS[name]["command"][0] not in ("migrate", "collectstatic")
+    assert OURS[name]["restart"] == ("unless-stopped" if lasts else "no")
+
+
 def test_the_services_know_one_another():
     for each in OURS.values():
         variables = each["environment"]

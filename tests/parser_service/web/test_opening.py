@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from django.utils import timezone
 
+from annotations.generation.split_statistics import store_figures
 from annotations.models import Split
 from gpsr_site.overview.best_runs import best_runs
 from parser_service.models import Evaluation, TrainingRun, Worker
@@ -116,6 +117,7 @@ def test_a_new_run_is_of_the_parser_that_is_recommended_next(sample, adam):
     nearest neighbour has a run, the next two follow."""
     assert adam.get("/w/home/runs/new/").context["chosen"] == "ranker"
     sample.split.examples.update(logical_form=sample.example.logical_form)
+    store_figures(sample.split)
     asked = []
     for name in ("linear", "ranker", "ranker"):
         page = adam.get("/w/home/runs/new/")
@@ -136,6 +138,7 @@ def test_a_new_run_learns_from_paraphrases_too_where_there_are_any(sample, adam)
     assert initial() == "gen+para"
     assert initial(train_sources="para") == "para"
     sample.split.examples.filter(source="paraphrased").delete()
+    store_figures(sample.split)
     assert initial() == "gen"
 
 
@@ -158,6 +161,7 @@ def test_a_new_run_is_on_a_split_with_paraphrases_by_command_first(sample, adam)
     newest = newer("again", "command")
     assert opened() == newest.pk
     newest.examples.filter(source="paraphrased").delete()
+    store_figures(newest)
     assert opened() == sample.split.pk
     assert adam.get("/w/home/runs/new/", {"split": newest.pk}).context["form"][
         "split"
