@@ -34,8 +34,12 @@ ROOMS = (
     "templates",
 )
 THE_FILE = ROOT / "annotations/language/forms/entity_classes.toml"
-# What the files of others, and the commands in them, are made of.
-TEXTS = ("annotations/starter", "annotations/language/texts/data/sample_commands.toml")
+# What the files of others, and the commands in them, are made of; and what the classes of those worlds mean.
+TEXTS = (
+    "annotations/starter",
+    "annotations/language/texts/data/sample_commands.toml",
+    "annotations/language/forms/meanings.toml",
+)
 TOKENS = frozenset(DEFAULT_CLASSES.tokens)
 MOST_IN_A_LIST, MOST_KEYS = 2, 3
 # Class names in a row, with quotation marks, commas, bars, colons and the like between them.
