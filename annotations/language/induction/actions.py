@@ -10,17 +10,22 @@ from annotations.language.induction.rules import Words, is_slot, says_something
 from annotations.language.texts import DETERMINERS, MAX_PREDICATE, PLACE_PREPOSITIONS
 
 DIRECT = ""  # the role of what no preposition introduces
-ROLE_WORDS = PLACE_PREPOSITIONS | {
-    "for",
-    "with",
-    "of",
-    "about",
-    "through",
-    "onto",
-    "until",
-    "and",
-    "or",
-}
+ROLE_WORDS = PLACE_PREPOSITIONS | frozenset(
+    (
+        *("for", "with", "of", "about", "through", "onto", "until", "and", "or"),
+        *(
+            "along",
+            "after",
+            "before",
+            "against",
+            "around",
+            "across",
+            "during",
+            "between",
+            "towards",
+        ),
+    )
+)
 # Behind a verb they belong to it: "turn off the lamp", but "go to the shed".
 # and some of them may stand behind its object: "turn the lamp off".
 SHIFTING_PARTICLES = frozenset(("on", "off", "up", "down", "out", "away", "over", "back"))

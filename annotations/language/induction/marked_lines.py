@@ -17,6 +17,7 @@ from typing import TypeAlias
 
 from annotations.language.forms import Form, read_form, require_token, to_template
 from annotations.language.texts import (
+    CONDITIONAL_PHRASES,
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
     MAX_ENTITY,
@@ -135,6 +136,8 @@ def read_example(line: str, position: Position | None = None) -> Example:
         raise LanguageError(
             f"the line has {len(parts):,} words and marks", place, f"{MOST_PARTS} is the limit"
         )
+    if not equals:
+        _require_command(_without_courtesy(parts), place)
     written = _MARK.sub(lambda match: match[0] if match["text"] is None else match["text"], said)
     example = Example(_without_courtesy(parts), line=place.line, said=" ".join(written.split()))
     return (
@@ -171,6 +174,24 @@ def _require_class(token: str, place: Position) -> None:
         require_token(token)
     except LanguageError as error:
         raise LanguageError(error.message, place, error.hint) from None
+
+
+def _require_command(parts: tuple[Part, ...], place: Position) -> None:
+    """Raise LanguageError for what forbids something, or asks for it under a condition: neither is done at once."""
+    words = [part.lower() if isinstance(part, str) else "" for part in parts]
+    said = f" {' '.join(words)} "
+    has_if = "if" in words and _ASKING.isdisjoint(words)  # "check if …" asks for no condition
+    has_phrase = any(f" {each} " in said for each in CONDITIONAL_PHRASES)
+    hint = "write what to do at once, or behind an equals sign one name for all of it"
+    if words[0] in _FORBIDDING or words[:2] == ["do", "not"]:
+        raise LanguageError("the line says what not to do", place, hint)
+    if words[0] in _CONDITIONS or has_if or has_phrase:
+        raise LanguageError("the line asks for something under a condition", place, hint)
+
+
+_FORBIDDING = frozenset(("don't", "dont", "never", "not"))
+_CONDITIONS = frozenset(("if", "when", "while", "once"))
+_ASKING = frozenset(("check", "see", "tell", "ask", "find", "look", "know", "say", "report"))
 
 
 def _with_meaning(example: Example, meaning: str, place: Position) -> Example:

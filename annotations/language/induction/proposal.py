@@ -432,7 +432,7 @@ def _doubts(
             yield Doubt("predicate", *names, "# {} is not {}".format(*names))
     roles: defaultdict[str, dict[str, None]] = defaultdict(dict)
     for place in places:
-        if place.role:
+        if place.role.partition(" ")[0]:  # behind a preposition
             roles[place.role].setdefault(tokens[place.mark])
     member = {each.token: each.texts[0] for each in classes}
     unnamed = {each.token for each in classes if not each.is_named}

@@ -35,6 +35,8 @@ def test_an_example_reads_back_from_its_line(
         ("could you water [bed  two].", ("water", Mark("bed two"))),
         ("go, then stop", ("go", ",", "then", "stop")),
         ("thanks", ("thanks",)),
+        ("check if [room two] is empty", ("check", "if", Mark("room two"), "is", "empty")),
+        ("don't enter [room two] = avoid", ("don't", "enter", Mark("room two"))),
     ],
 )
 def test_what_is_said_out_of_courtesy_is_left_out(line: str, parts: tuple[str | Mark, ...]) -> None:
@@ -51,6 +53,11 @@ def test_what_is_said_out_of_courtesy_is_left_out(line: str, parts: tuple[str | 
         ("water = the roses", 9),
         ("water = (water", 15),
         (", ,", 1),
+        ("if it rains, close the [skylight]", 1),
+        ("close the [skylight] if it rains", 1),
+        ("close the [skylight] unless it is hot", 1),
+        ("don't enter the [orchard]", 1),
+        ("please do not enter the [orchard]", 1),
     ],
 )
 def test_a_line_that_is_no_example_is_refused_where_it_goes_wrong(line: str, column: int) -> None:
