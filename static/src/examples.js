@@ -1,6 +1,6 @@
 // The lines of the page By example: [ puts brackets around what is selected, and what the server has made of the lines
 // after a correction takes their place, so that the undo of the browser brings them back.
-import { isCtrlEnter, keyOf } from "./typing.js";
+import { isCtrlEnter, writes } from "./typing.js";
 
 /** Put `text` into the place between two positions of a field, as if somebody typed it. */
 function write(field, start, end, text) {
@@ -52,7 +52,7 @@ export function enhance(page) {
   const said = page.querySelector("[data-examples-try] input[name=said]");
   page.querySelector("[data-mark]").addEventListener("click", () => mark(lines));
   lines.addEventListener("keydown", (event) => {
-    if (keyOf(event) !== "[" || lines.selectionStart === lines.selectionEnd) return;
+    if (!writes(event, "[") || lines.selectionStart === lines.selectionEnd) return;
     event.preventDefault();
     mark(lines);
   });

@@ -31,6 +31,9 @@ export function keyOf(event) {
 
 const inCase = (letter, isCapital) => (isCapital ? letter.toUpperCase() : letter.toLowerCase());
 
+/** Whether a key writes this character: also with AltGr, where a keyboard has it there. */
+export const writes = (event, character) => event.key === character && !isComposing(event);
+
 /** Whether this is Enter with Ctrl, or with the command key of a Mac, and no part of a composition. */
 export const isCtrlEnter = (event) =>
   event.key === "Enter" && (event.ctrlKey || event.metaKey) && !isComposing(event);
