@@ -11,10 +11,10 @@ from random import Random
 from annotations.language.forms import (
     Application,
     Form,
-    Lambda,
     Symbols,
     Text,
     Wildcard,
+    with_leaves,
 )
 from annotations.language.induction import KnownWorld, Rule, folded
 from annotations.language.templates import TemplateChart, spread_derivations
@@ -67,16 +67,8 @@ def _rules(symbols: Symbols, form: Form) -> Iterator[Rule]:
             word = symbol.value if isinstance(symbol, Text) else symbol.token
             words += [word] if word else []
 
-    def numbered(part: Form) -> Form:
-        match part:
-            case Wildcard():
-                return numbers[part.identity]
-            case Lambda(variable, type_, bodies):
-                return Lambda(variable, type_, tuple(map(numbered, bodies)))
-            case Application(predicate, arguments):
-                return Application(predicate, tuple(map(numbered, arguments)))
-            case _:
-                return part
+    def numbered(leaf: Form) -> Form:
+        return numbers[leaf.identity] if isinstance(leaf, Wildcard) else leaf
 
     with suppress(KeyError):
-        yield Rule(tuple(words), numbered(form))
+        yield Rule(tuple(words), with_leaves(form, numbered))

@@ -101,6 +101,7 @@ from annotations.language.forms.terms import (
     predicates,
     size,
     walk,
+    with_leaves,
     with_part,
 )
 from annotations.language.forms.tree_distance import FormDistances

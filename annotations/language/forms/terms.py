@@ -7,7 +7,7 @@ Equality is literal and hashes agree with it; for equality up to the names of va
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -106,6 +106,18 @@ def with_part(form: Form, path: Sequence[int], part: Form) -> Form:
         return Lambda(form.variable, form.type, tuple(parts))
     assert isinstance(form, Application)
     return Application(form.predicate, tuple(parts))
+
+
+def with_leaves(form: Form, change: Callable[[Form], Form]) -> Form:
+    """Return the form with ``change`` of everything in it that has no parts, in order."""
+    if isinstance(form, Lambda):
+        bodies = tuple(with_leaves(each, change) for each in form.bodies)
+        return Lambda(form.variable, form.type, bodies)
+    if isinstance(form, Application):
+        return Application(
+            form.predicate, tuple(with_leaves(each, change) for each in form.arguments)
+        )
+    return change(form)
 
 
 def walk(form: Form) -> Iterator[Form]:

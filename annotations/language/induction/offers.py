@@ -14,12 +14,11 @@ from itertools import islice, pairwise
 from typing import TypeAlias
 
 from annotations.language.forms import (
-    Application,
     Constant,
     Form,
-    Lambda,
     Wildcard,
     head_predicate,
+    with_leaves,
 )
 from annotations.language.induction.actions import ROLE_WORDS, SHIFTING_PARTICLES
 from annotations.language.induction.analogies import Derived
@@ -96,15 +95,12 @@ def _offer(rule: Rule, kind: OfferKind, source: Rule, texts: Mapping[str, Sequen
 
 
 def _with_texts(form: Form, texts: Mapping[int, str]) -> Form:
-    match form:
-        case Wildcard(id=number) if number is not None:
-            return Constant(texts[number])
-        case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(_with_texts(each, texts) for each in bodies))
-        case Application(predicate, arguments):
-            return Application(predicate, tuple(_with_texts(each, texts) for each in arguments))
-        case _:
-            return form
+    def change(leaf: Form) -> Form:
+        if isinstance(leaf, Wildcard) and leaf.id is not None:
+            return Constant(texts[leaf.id])
+        return leaf
+
+    return with_leaves(form, change)
 
 
 def _in_other_orders(rule: Rule) -> Iterator[Rule]:

@@ -17,7 +17,6 @@ from annotations.language.forms import (
     Application,
     Constant,
     Form,
-    Lambda,
     Nonterminal,
     Text,
     Wildcard,
@@ -25,6 +24,7 @@ from annotations.language.forms import (
     head_predicate,
     print_sequence,
     to_template,
+    with_leaves,
 )
 from annotations.language.grammar import CHECK_STEPS, Budget
 from annotations.language.induction.actions import Action, ArgumentOrder, orders_of, read_action
@@ -127,15 +127,9 @@ class KnownWorld:
 
 def _with_tokens(form: Form) -> Form:
     """Return the form with class tokens for its slots, as commands have them."""
-    match form:
-        case Wildcard(name=name):
-            return Constant(f"<{name}>")
-        case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(map(_with_tokens, bodies)))
-        case Application(predicate, arguments):
-            return Application(predicate, tuple(map(_with_tokens, arguments)))
-        case _:
-            return form
+    return with_leaves(
+        form, lambda leaf: Constant(f"<{leaf.name}>") if isinstance(leaf, Wildcard) else leaf
+    )
 
 
 def _roles_in_order(rule: Rule) -> list[str] | None:
@@ -188,15 +182,12 @@ class ProposedTemplate:
         return Wildcard(token, id=number if self.rule.words.count(f"<{token}>") > 1 else None)
 
     def _slots_as_written(self, form: Form) -> Form:
-        match form:
-            case Wildcard(name=name, id=number) if number is not None:
-                return self._wildcard(name, number)
-            case Lambda(variable, type_, bodies):
-                return Lambda(variable, type_, tuple(map(self._slots_as_written, bodies)))
-            case Application(predicate, arguments):
-                return Application(predicate, tuple(map(self._slots_as_written, arguments)))
-            case _:
-                return form
+        def change(leaf: Form) -> Form:
+            if isinstance(leaf, Wildcard) and leaf.id is not None:
+                return self._wildcard(leaf.name, leaf.id)
+            return leaf
+
+        return with_leaves(form, change)
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,15 +333,13 @@ class _Clause:
 
 def _with_slots(form: Form, texts: Mapping[str, Wildcard]) -> Form:
     """Return the form with the slots of the marked texts in place of the constants that name them."""
-    match form:
-        case Constant(value=str(value)):
-            return texts.get(folded(value), form)
-        case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(_with_slots(each, texts) for each in bodies))
-        case Application(predicate, arguments):
-            return Application(predicate, tuple(_with_slots(each, texts) for each in arguments))
-        case _:
-            return form
+
+    def change(leaf: Form) -> Form:
+        if isinstance(leaf, Constant) and isinstance(leaf.value, str):
+            return texts.get(folded(leaf.value), leaf)
+        return leaf
+
+    return with_leaves(form, change)
 
 
 def _renamed(

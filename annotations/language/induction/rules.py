@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import TypeAlias
 
-from annotations.language.forms import Application, Form, Lambda, Wildcard
+from annotations.language.forms import Form, Wildcard, with_leaves
 from annotations.language.texts import ARTICLES, BOUNDARIES, LIGHT_WORDS, PRONOUNS
 
 Words: TypeAlias = "tuple[str, ...]"
@@ -76,15 +76,13 @@ def slots_shared(left: Words, right: Words) -> dict[int, int]:
 
 def renumbered(form: Form, numbers: Mapping[int, int]) -> Form:
     """Return the form with other numbers for its slots; those that ``numbers`` lacks stay."""
-    match form:
-        case Wildcard(name=name, id=number) if number is not None:
-            return Wildcard(name, id=numbers.get(number, number))
-        case Lambda(variable, type_, bodies):
-            return Lambda(variable, type_, tuple(renumbered(each, numbers) for each in bodies))
-        case Application(predicate, arguments):
-            return Application(predicate, tuple(renumbered(each, numbers) for each in arguments))
-        case _:
-            return form
+
+    def change(leaf: Form) -> Form:
+        if isinstance(leaf, Wildcard) and leaf.id is not None:
+            return Wildcard(leaf.name, id=numbers.get(leaf.id, leaf.id))
+        return leaf
+
+    return with_leaves(form, change)
 
 
 def mean_the_same(left: Rule, right: Rule) -> bool:
