@@ -17,6 +17,7 @@ from typing import TypeAlias
 
 from annotations.language.forms import Form, read_form, require_token, to_template
 from annotations.language.texts import (
+    ASKING_WORDS,
     CONDITIONAL_PHRASES,
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
@@ -180,7 +181,7 @@ def _require_command(parts: tuple[Part, ...], place: Position) -> None:
     """Raise LanguageError for what forbids something, or asks for it under a condition: neither is done at once."""
     words = [part.lower() if isinstance(part, str) else "" for part in parts]
     said = f" {' '.join(words)} "
-    has_if = "if" in words and _ASKING.isdisjoint(words)  # "check if …" asks for no condition
+    has_if = "if" in words and ASKING_WORDS.isdisjoint(words)  # "check if …" asks for no condition
     has_phrase = any(f" {each} " in said for each in CONDITIONAL_PHRASES)
     hint = "write what to do at once, or behind an equals sign one name for all of it"
     if words[0] in _FORBIDDING or words[:2] == ["do", "not"]:
@@ -191,7 +192,6 @@ def _require_command(parts: tuple[Part, ...], place: Position) -> None:
 
 _FORBIDDING = frozenset(("don't", "dont", "never", "not"))
 _CONDITIONS = frozenset(("if", "when", "while", "once"))
-_ASKING = frozenset(("check", "see", "tell", "ask", "find", "look", "know", "say", "report"))
 
 
 def _with_meaning(example: Example, meaning: str, place: Position) -> Example:

@@ -77,6 +77,7 @@ from annotations.language.texts.word_lists import (
     ARGUMENT_NAMES,
     ARGUMENT_QUESTION_WORDS,
     ARTICLES,
+    ASKING_WORDS,
     BOUNDARIES,
     CALLS,
     CHECK_WORDS,

@@ -128,6 +128,7 @@ CHOICE_FILLERS = frozenset(_words.words("choice_fillers"))
 VAGUE_WORDS = frozenset(_words.words("vague"))
 LIGHT_WORDS = frozenset(_words.words("light"))
 GOING_WORDS = frozenset(_words.words("going"))
+ASKING_WORDS = frozenset(_words.words("asking"))
 POLITE_OPENINGS = _words.words("polite_openings")
 NO_COMMAND_WORDS = frozenset(_words.words("no_command"))
 
