@@ -143,7 +143,7 @@ def counts_of_all(worlds: QuerySet[World]) -> dict[int, Counts]:
         keys, chosen = worlds.order_by().values("id").query.sql_with_params()
     except EmptyResultSet:
         return {}
-    small = _count(_small_statement(), keys, chosen)
+    small = _count(_small_statement(MOST_EXACT), keys, chosen)
     stamps = {key: (each.pop("generations"), each.pop("job")) for key, each in small.items()}
     large = _large_numbers(stamps)
     counted = {}
@@ -196,9 +196,9 @@ def _count(
 
 
 @cache
-def _small_statement() -> tuple[str, tuple[Any, ...]]:
+def _small_statement(most_free: int) -> tuple[str, tuple[Any, ...]]:
     """Return the query that counts for every world what there is little of: the key, the fields of ``Counts`` but
-    ``LARGE``, the stamp, and the free items up to ``MOST_EXACT``.
+    ``LARGE``, the stamp, and the free items up to ``most_free``.
 
     Composed once: Django takes longer for that than the database for the answer.
     """
@@ -215,7 +215,7 @@ def _small_statement() -> tuple[str, tuple[Any, ...]]:
     ended = Job.objects.filter(world=OuterRef("pk"), finished_at__isnull=False).order_by("-id")
     counted["job"] = Coalesce(Subquery(ended.values("id")[:1]), 0)
     free = WorkItem.objects.free().filter(world=OuterRef("pk")).order_by("-priority", "id")
-    some_free = free.values("pk")[:MOST_EXACT]
+    some_free = free.values("pk")[:most_free]
     counted["some_free"] = Subquery(
         some_free,
         output_field=IntegerField(),
