@@ -39,6 +39,7 @@ class PromptChoice:
             differ, at most.
         balance: what gets equally many prompts: each form or each line of the templates.
         target_per_form: forms with as many accepted paraphrases are left out.
+        most_prompts: so many at most, None for all. More than ``MOST_PROMPTS`` are refused.
     """
 
     task_categories: tuple[str, ...] = ()
@@ -47,6 +48,7 @@ class PromptChoice:
     wording: str = Wording.COMMAND
     balance: str = Balance.FORMS
     seed: int = 0
+    most_prompts: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,15 +86,17 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
     for expansion in wanted:
         line = patterns[expansion.task_category][expansion.template_index]
         groups[line if choice.balance == Balance.LINES else expansion.form_text].append(expansion)
-    if len(groups) * choice.prompts_per_form > MOST_PROMPTS:
+    if choice.most_prompts is None and len(groups) * choice.prompts_per_form > MOST_PROMPTS:
         said = (
             f"{len(groups):,} {choice.balance} make too many prompts. Choose fewer task categories."
         )
         raise Refusal(said, "too_many_prompts")
     random, ontology, declared = Random(choice.seed), ontology_of(world), predicates_of(world)
     sources = {category.name: GroundedCommands(category) for category in categories}
-    drawn = []
+    drawn: list[DrawnPrompt] = []
     for key in random.sample(list(groups), len(groups)):
+        if len(drawn) >= (choice.most_prompts or MOST_PROMPTS):
+            break
         for expansion, grounded in _draw(groups[key], sources, ontology, choice, random):
             shown = grounded.text
             if choice.wording == Wording.ENGLISH:
@@ -106,7 +110,7 @@ def draw_prompts(world: World, choice: PromptChoice) -> list[DrawnPrompt]:
             "No form is below its target here. Choose other task categories, or raise the target."
         )
         raise Refusal(said, "nothing_to_paraphrase")
-    return drawn
+    return drawn[: choice.most_prompts]
 
 
 def launch(

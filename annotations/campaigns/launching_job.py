@@ -50,7 +50,10 @@ def is_heavy(world: World, choice: PromptChoice) -> bool:
     is_by_line = choice.balance == Balance.LINES
     lines = SemanticTemplate.objects.filter(grammar__world=world)
     groups = lines if is_by_line else world.logical_forms
-    return groups.count() * choice.prompts_per_form > MOST_PROMPTS or is_large(world)
+    prompts = groups.count() * choice.prompts_per_form
+    if choice.most_prompts is not None:
+        prompts = min(prompts, choice.most_prompts)
+    return prompts > MOST_PROMPTS or is_large(world)
 
 
 def preview(world: World, choice: PromptChoice) -> dict[str, Any]:

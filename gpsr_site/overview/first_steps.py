@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
-from annotations.models import Duty, Entity, Production, TaskCategory, World
+from annotations.models import Duty, Entity, Production, Submission, TaskCategory, World
 from annotations.rows.composition import split_entry
 from gpsr_site.overview.counts import Counts
 
@@ -28,17 +28,27 @@ class Beginning(StrEnum):
     WRITTEN = "written"
 
 
+# The page of the documents that says more.
+GUIDES = {
+    Beginning.EMPTY: "guides/by-example",
+    Beginning.COMPETITION: "guides/first-steps#a-world-for-a-competition",
+    Beginning.STARTER: "guides/first-steps#the-first-minute",
+    Beginning.FILES: "guides/importing",
+    Beginning.WRITTEN: "guides/first-steps#a-world-of-your-own",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class FirstStep:
-    """One step. ``name`` is the URL of its page, or of the action where ``is_action``; ``who`` says
-    who takes it where the reader may not. The steps after an ``is_optional`` one do not wait for it."""
+    """One step. ``name`` is the URL of its page, or of an action that it sends ``sends`` to; ``who`` says who takes it
+    where the reader may not. The steps after an ``is_optional`` one do not wait for it."""
 
     sentence: str
     label: str
     name: str
     duty: Duty
     is_done: bool = False
-    is_action: bool = False
+    sends: str = ""
     is_optional: bool = False
     is_next: bool = False
     is_allowed: bool = False
@@ -72,9 +82,11 @@ def beginning_of(world: World) -> Beginning:
     return Beginning.FILES if from_files.exists() else Beginning.WRITTEN
 
 
-def first_steps(world: World, counts: Counts, duties: frozenset[Duty]) -> list[FirstStep]:
+def first_steps(
+    world: World, beginning: Beginning, counts: Counts, duties: frozenset[Duty]
+) -> list[FirstStep]:
     """List the steps of a world for somebody with ``duties``."""
-    steps = list(_steps(world, counts, beginning_of(world)))
+    steps = list(_steps(world, counts, beginning))
     first_open = next((step for step in steps if not (step.is_done or step.is_optional)), None)
     return [
         replace(step, is_next=step is first_open, is_allowed=step.duty in duties) for step in steps
@@ -82,76 +94,63 @@ def first_steps(world: World, counts: Counts, duties: frozenset[Duty]) -> list[F
 
 
 def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[FirstStep]:
+    view, annotate, manage = Duty.VIEW, Duty.ANNOTATE, Duty.MANAGE
     people = FirstStep(
-        *("Invite the people who work on it with you.", "Invite people", "people", Duty.MANAGE),
+        *("Invite the people who work on it with you.", "Invite people", "people", manage),
         is_done=counts.members > 1,
         is_optional=True,
     )
     generate = FirstStep(
-        *(
-            "Generate the commands of the templates.",
-            "Generate commands",
-            "generate",
-            Duty.ANNOTATE,
-        ),
+        *("Generate the commands of the templates.", "Generate commands", "generate", annotate),
         is_done=bool(counts.commands),
-        is_action=True,
+        sends="generate",
     )
     freeze = FirstStep(
         "Freeze a split into parts to train, validate and test on.",
-        *("Freeze a split", "split_new", Duty.ANNOTATE),
+        *("Freeze a split", "split_new", annotate),
         is_done=bool(counts.splits),
     )
     train = FirstStep(
         "Train what is recommended here, for what people say in other words.",
-        *("Start a run", "run_new", Duty.MANAGE),
+        *("Start a run", "run_new", manage),
         is_done=bool(counts.runs),
     )
     wrong = FirstStep(
-        *("Read its wrong answers.", "Watch the runs", "runs", Duty.VIEW),
-        is_done=bool(counts.evaluated),
+        *("Read its wrong answers.", "Watch the runs", "runs", view), is_done=bool(counts.evaluated)
     )
-    ask = FirstStep(
-        "Ask people how they would say the commands, by a link.",
-        *("Start a campaign", "campaign_new", Duty.MANAGE),
-        is_done=bool(counts.paraphrases),
-        is_optional=True,
-    )
+    ask = _of_paraphrases(world, counts)
     attempt = FirstStep(
-        *("Say something to it.", "Try a command", "playground", Duty.VIEW), is_optional=True
+        *("Say something to it.", "Try a command", "playground", view), is_optional=True
     )
-    robot = FirstStep(
-        *("Connect your robot.", "How a robot asks", "robot", Duty.VIEW), is_optional=True
-    )
+    robot = FirstStep(*("Connect your robot.", "How a robot asks", "robot", view), is_optional=True)
     written = FirstStep(
         "Write templates: each gives the commands of a pattern their logical form.",
-        *("Write a template", "template_new", Duty.ANNOTATE),
+        *("Write a template", "template_new", annotate),
         is_done=bool(counts.templates),
     )
     named = FirstStep(
         "Name what your robot knows: plants, beds, people.",
-        *("Name an entity", "entity_new", Duty.ANNOTATE),
+        *("Name an entity", "entity_new", annotate),
         is_done=bool(counts.entities),
     )
     grammar = FirstStep(
         "Write a grammar: how people say the commands.",
-        *("Write a production", "production_new", Duty.ANNOTATE),
+        *("Write a production", "production_new", annotate),
         is_done=bool(counts.productions),
     )
     files = FirstStep(
         "Or import the files of a command generator or a competition.",
-        *("Import files", "import", Duty.MANAGE),
+        *("Import files", "import", manage),
         is_optional=True,
     )
     examples = FirstStep(
         "Write what people say: entities, grammar and templates follow from it.",
-        *("Write examples", "by_example", Duty.ANNOTATE),
+        *("Write examples", "by_example", annotate),
         is_done=bool(counts.templates),
     )
-    by_hand = FirstStep(
-        "Or write it by hand: what the robot knows, then a grammar, then templates.",
-        *("Name an entity", "entity_new", Duty.ANNOTATE),
-        is_done=bool(counts.entities),
+    by_hand = replace(
+        named,
+        sentence="Or write it by hand: what the robot knows, then a grammar, then templates.",
         is_optional=True,
     )
     to_the_end = (ask, freeze, train, wrong, robot, people)
@@ -166,6 +165,23 @@ def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[First
             return (named, grammar, written, generate, attempt, *to_the_end)
         case Beginning.FILES:
             return (written, generate, attempt, *to_the_end)
+
+
+def _of_paraphrases(world: World, counts: Counts) -> FirstStep:
+    """Return the step to paraphrases: a campaign at one press, then its link, then what came in by it."""
+    said = Submission.objects.filter(contributor__campaign__world=world)
+    sends = ""
+    if not counts.paraphrases and said.awaiting_moderation().exists():
+        asked = ("Accept what people wrote.", "Read what came in", "submissions")
+    elif not counts.paraphrases and world.campaigns.exists():
+        asked = ("Send the link of your campaign to people.", "Show the link", "campaigns")
+    else:
+        sentence = "Ask ten people how they would say the commands, by a link."
+        asked = (sentence, "Make a campaign", "campaign_new")
+        sends = "ten_tasks" if counts.commands else ""
+    return FirstStep(
+        *(*asked, Duty.MANAGE), is_done=bool(counts.paraphrases), is_optional=True, sends=sends
+    )
 
 
 def _of_competition(world: World) -> Iterable[FirstStep]:

@@ -20,11 +20,12 @@ from annotations.people.access import (
 )
 from gpsr_site.overview.best_runs import best_runs
 from gpsr_site.overview.counts import Counts, counts_of, counts_of_all
-from gpsr_site.overview.first_steps import first_steps
+from gpsr_site.overview.first_steps import GUIDES, beginning_of, first_steps
 from gpsr_site.overview.flow import stages
 from gpsr_site.overview.work_list import WorkList
 from gpsr_site.overview.workers import workers_now
 from parser_service.results.answerer_rows import newest_answerer_table
+from parser_service.results.worth_of_paraphrases import measured_elsewhere, measured_here
 from parser_service.serving.answering import answering_parts
 
 MOST_SHOWN = 3  # things that wait, for each world of the list
@@ -62,10 +63,18 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
     work = WorkList(world, counts, request.duties, workers_now(), best, jobs, is_only_world)
     # They close by themselves once a parser has been scored.
     steps_closed = request.session.get(_steps_key(world), bool(counts.evaluated))
-    context = {
+    context: dict[str, object] = {}
+    if not steps_closed:
+        beginning = beginning_of(world)
+        steps = first_steps(world, beginning, counts, request.duties)
+        context = {"first_steps": steps, "guide": GUIDES[beginning]}
+    if counts.evaluated and counts.paraphrases:
+        context["worth"] = measured_here(world)
+    elif counts.commands and not counts.paraphrases:
+        context["worth"] = measured_elsewhere()
+    context |= {
         "stages": stages(counts),
         "work_groups": work.groups,
-        "first_steps": [] if steps_closed else first_steps(world, counts, request.duties),
         "steps_closed": steps_closed,
         "coverage": TaskCategory.objects.filter(grammar__world=world),
         "measured": newest_answerer_table(world) if counts.splits else None,

@@ -36,9 +36,10 @@ MOST_REWRITES, MOST_FREE_COMMANDS = 100, 20
 MOST_SUBMISSIONS = 1_000_000
 MOST_TASKS_PER_HOUR = 100_000
 MOST_MINUTES = 1_000
+TEN_TASKS = 10  # of a campaign that one button makes
 PARAMETER = r"[A-Za-z][A-Za-z0-9_.-]{0,39}"  # of an address
 INTRODUCTION = (
-    "You will see commands that somebody could give to a robot at home. Say each of them in your own words: "
+    "You will see commands that somebody could give to a robot. Say each of them in your own words: "
     "use other words or another order, but ask for the same. Write as you would speak."
 )
 EXAMPLES = """\
@@ -240,6 +241,13 @@ class CampaignForm(forms.Form):
         """Return the columns of the campaign that a valid form describes."""
         others = ("task_categories", "prompts_per_form")
         return {name: value for name, value in self.cleaned_data.items() if name not in others}
+
+    @classmethod
+    def of_ten_tasks(cls, world: World, name: str) -> CampaignForm:
+        """Return the form as it is, filled in, for a campaign that ends by itself with ``TEN_TASKS``."""
+        values = {key: field.initial for key, field in cls.base_fields.items()}
+        task = cls.base_fields["task_size"].initial + cls.base_fields["free_commands"].initial
+        return cls(world, {**values, "name": name, "most_submissions": TEN_TASKS * task})
 
     def group(self, names: tuple[str, ...]) -> list[forms.BoundField]:
         return [self[name] for name in names]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from django.contrib import messages
@@ -25,6 +26,7 @@ from annotations.people.audit_log import note
 from annotations.showing.listing import Listing, Sort, render_list
 from annotations.showing.paging import number_in
 from annotations.web.campaigns.campaign_forms import (
+    TEN_TASKS,
     CampaignChangeForm,
     CampaignFilters,
     CampaignForm,
@@ -58,22 +60,29 @@ def campaigns(request: WorldRequest, world: World) -> HttpResponse:
 def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that launches a campaign; its other button only previews the prompts.
 
-    The address may choose ``task_categories`` and ``target_per_form`` beforehand.
+    The address may choose ``task_categories`` and ``target_per_form`` beforehand. A POST of ``ten_tasks`` alone
+    launches the form as it is, with as many prompts as ten people rewrite.
     """
     initial: dict[str, Any] = {"name": f"Campaign {world.campaigns.count() + 1}"}
     initial["task_categories"] = request.GET.getlist("task_categories")
     if target := number_in(request.GET.get("target_per_form", "")):
         initial["target_per_form"] = target
+    is_quick = "ten_tasks" in request.POST
     form = CampaignForm(world, posted(request), initial=initial)
+    if is_quick:
+        form = CampaignForm.of_ten_tasks(world, initial["name"])
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
+        choice = form.choice
+        if is_quick:
+            choice = replace(choice, most_prompts=TEN_TASKS * form.cleaned_data["task_size"])
         try:
             started: Job | Campaign | dict[str, Any]
-            if "launch" in request.POST:
-                started = start_launch(world, form.values, form.choice, request.user)
+            if is_quick or "launch" in request.POST:
+                started = start_launch(world, form.values, choice, request.user)
                 note(request, form.cleaned_data["name"])
             else:
-                started = start_preview(world, form.choice, request.user)
+                started = start_preview(world, choice, request.user)
             if isinstance(started, Job):
                 return redirect("job", pk=started.pk)
             if isinstance(started, Campaign):

@@ -273,5 +273,5 @@ def test_the_list_of_worlds_says_what_waits_in_each(busy, other_world, adam):
 def test_the_overview_costs_no_query_a_run_or_category(busy, adam, django_assert_max_num_queries):
     for seed in range(20, 30):
         scored_run(busy.world, busy.split, seed=seed)
-    with django_assert_max_num_queries(22):
+    with django_assert_max_num_queries(23):
         adam.get("/w/home/")
