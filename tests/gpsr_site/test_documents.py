@@ -20,6 +20,7 @@ from gpsr_site.documents import (
     find_document,
     find_image,
 )
+from gpsr_site.overview.first_steps import GUIDES
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -28,6 +29,8 @@ TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
 TAG = re.compile(r"{% docs (.*?) %}")
 LINKS = sorted(
     {target for path in TEMPLATES for target in TAG.findall(path.read_text(encoding="utf-8"))}
+    - {"guide"}
+    | {*GUIDES.values()}
 )
 
 

@@ -8,9 +8,8 @@ from annotations.campaigns.answering import save_answer
 from annotations.campaigns.tasks import begin
 from annotations.models import Entity, Grammar, Ontology, Production, TaskCategory
 from annotations.models.worlds import DUTIES, Role
-from gpsr_site.documents import find_document
 from gpsr_site.overview.counts import counts_of
-from gpsr_site.overview.first_steps import GUIDES, Beginning, beginning_of, first_steps
+from gpsr_site.overview.first_steps import Beginning, beginning_of, first_steps
 from tests.launched_campaigns import fill_household
 from tests.replaying import made_once
 
@@ -123,10 +122,3 @@ def test_a_campaign_of_ten_tasks_is_one_press_and_the_steps_go_on(world, adam):
     task = begin(campaign, "somebody")
     save_answer(task.submissions.first(), "would you please do what I have just asked for")
     assert step_to_paraphrases() == ("submissions", "")
-
-
-@pytest.mark.parametrize("guide", GUIDES.values())
-def test_the_guide_of_each_beginning_is_there(guide):
-    path, _, part = guide.partition("#")
-    document = find_document(path)
-    assert document and (not part or document.heading(part))
