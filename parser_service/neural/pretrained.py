@@ -13,7 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from annotations.language.texts import Refusal
-from parser_service.parsers.pretrained_files import CONFIG, TOKENIZERS, WEIGHTS, find_encoder
+from parser_service.parsers.pretrained_files import (
+    CONFIG,
+    TOKENIZERS,
+    WEIGHTS,
+    find_encoder,
+    refuse_other_weights,
+)
 from parser_service.parsers.storage import file_hash
 
 if TYPE_CHECKING:
@@ -34,6 +40,7 @@ class Pretrained:
 def load_encoder(name: str, encoders: Path | None = None) -> Pretrained:
     """Load the encoder ``name``, from where ``find_encoder`` finds it. Raises Refusal."""
     folder = find_encoder(name, encoders)
+    refuse_other_weights(name, folder)
     # Importing it takes seconds, and a saved ranker answers without it.
     from transformers import AutoModel, AutoTokenizer, PreTrainedTokenizerFast
 

