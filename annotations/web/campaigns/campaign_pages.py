@@ -61,16 +61,19 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that launches a campaign; its other button only previews the prompts.
 
     The address may choose ``task_categories`` and ``target_per_form`` beforehand. A POST of ``ten_tasks`` alone
-    launches the form as it is, with as many prompts as ten people rewrite.
+    launches the form as it is, with as many prompts as ten people rewrite. A world has one such campaign, however
+    often the button is pressed.
     """
+    is_quick = "ten_tasks" in request.POST
+    if is_quick and world.campaigns.exists():
+        return _already_there(request, world)
     initial: dict[str, Any] = {"name": f"Campaign {world.campaigns.count() + 1}"}
     initial["task_categories"] = request.GET.getlist("task_categories")
     if target := number_in(request.GET.get("target_per_form", "")):
         initial["target_per_form"] = target
-    is_quick = "ten_tasks" in request.POST
     form = CampaignForm(world, posted(request), initial=initial)
     if is_quick:
-        form = CampaignForm.of_ten_tasks(world, initial["name"])
+        form = CampaignForm.of_ten_tasks(world, "Campaign 1")  # pressed twice, the second finds the name taken
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         choice = form.choice
@@ -92,10 +95,18 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
         except LanguageError as error:
             form.add_error(None, sentence_of(error))
         except Refusal as refusal:
-            field = "name" if refusal.code == "name_taken" else None
-            form.add_error(field, refusal.message)
+            is_taken = refusal.code == "name_taken"
+            if is_quick and is_taken:
+                return _already_there(request, world)
+            form.add_error("name" if is_taken else None, refusal.message)
     status = 422 if form.errors else 200
     return render(request, "annotations/campaigns/campaign_new.html", context, status=status)
+
+
+def _already_there(request: WorldRequest, world: World) -> HttpResponse:
+    """Lead whoever presses the button of ten tasks once more to what the first press made."""
+    messages.info(request, "This world has a campaign already. Its page has the link.")
+    return redirect("campaigns", world=world.name)
 
 
 @takes_files

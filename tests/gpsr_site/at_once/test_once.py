@@ -70,6 +70,22 @@ def key(transactional_db, superuser) -> str:
     return ApiToken.issue(superuser, "robot")[1]
 
 
+def test_a_campaign_at_one_press_is_made_once(sample, superuser):
+    sample.world.campaigns.all().delete()
+    clients = [client_of(superuser) for _ in range(8)]
+    path = f"/w/{sample.world.name}/campaigns/new/"
+
+    def press(number: int) -> str:
+        return clients[number].post(path, {"ten_tasks": ""})["Location"]
+
+    led_to = Counter(at_once(*(partial(press, number) for number in range(8))))
+    made = sample.world.campaigns.get()
+    assert led_to == {
+        f"/w/{sample.world.name}/campaigns/{made.pk}/": 1,
+        path.removesuffix("new/"): 7,
+    }
+
+
 def test_a_link_for_a_lost_password_sets_one(transactional_db, annotator):
     path = password_path(annotator)
     clients = [Client() for _ in range(8)]

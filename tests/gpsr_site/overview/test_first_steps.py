@@ -112,6 +112,8 @@ def test_a_campaign_of_ten_tasks_is_one_press_and_the_steps_go_on(world, adam):
     for page in ("", "commands/"):
         assert 'name="ten_tasks"' in adam.get(f"/w/home/{page}").content.decode()
     answer = adam.post("/w/home/campaigns/new/", {"ten_tasks": ""})
+    again = adam.post("/w/home/campaigns/new/", {"ten_tasks": ""})
+    assert again.url == "/w/home/campaigns/"
     campaign = household.campaigns.get()
     assert answer.url == f"/w/home/campaigns/{campaign.pk}/"
     assert 0 < campaign.prompts.count() <= 120
