@@ -67,7 +67,7 @@ def world(request: OverviewRequest, world: World) -> HttpResponse:
     if not steps_closed:
         beginning = beginning_of(world)
         steps = first_steps(world, beginning, counts, request.duties)
-        context = {"first_steps": steps, "guide": GUIDES[beginning]}
+        context = {"first_steps": steps, "guide_page": GUIDES[beginning]}
     if counts.evaluated and counts.paraphrases:
         context["worth"] = measured_here(world)
     elif counts.commands and not counts.paraphrases:
