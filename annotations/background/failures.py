@@ -37,8 +37,8 @@ MAKE_WRITABLE = (
 )
 DAMAGED = (
     "The database is damaged: a part of it cannot be read, and what stood there may be lost. Stop the site and "
-    "its workers, keep a copy of the database as it is, and bring back the last backup with “manage.py "
-    "restore FILE --replace” (docs/guides/operations.md). What was saved after that backup is in the copy only."
+    "its workers, keep a copy of the database as it is, and bring back the last backup with “gpsr-workbench "
+    "manage restore FILE --replace” (docs/guides/operations.md). What was saved after that backup is in the copy only."
 )
 
 
@@ -74,7 +74,8 @@ def database_sentence(error: DatabaseError) -> str:
         return DAMAGED
     cause = error.__cause__
     if getattr(cause, "sqlstate", None) in POSTGRES_OLDER or SQLITE_OLDER.search(str(error)):
-        return f"The database is older than this version ({error}). Run “manage.py migrate”, then this again."
+        again = "Run “gpsr-workbench manage migrate”, then this again."
+        return f"The database is older than this version ({error}). {again}"
     return f"The database did not carry this out ({error}). Run it again when the database answers."
 
 

@@ -179,7 +179,7 @@ def near_duplicates_of(split: Split, limit: int | None = MOST_COMPARISONS) -> li
     if limit is not None and needed > limit:
         raise LanguageError(
             f"comparing all utterances with training takes {needed:,} comparisons",
-            hint=f"run manage.py leakage {split.world.name} {split.name}",
+            hint=f"run gpsr-workbench manage leakage {split.world.name} {split.name}",
         )
     return [near_duplicates(part, items, train) for part, items in parts.items()]
 

@@ -18,7 +18,7 @@ SEARCHED = {
 }
 WITHOUT = (
     "The extension pg_trgm cannot be made here, so searches will read all texts. Let an administrator of the database "
-    "run CREATE EXTENSION pg_trgm, and then: manage.py migrate annotations 0047, manage.py migrate\n"
+    "run CREATE EXTENSION pg_trgm, and then: gpsr-workbench manage migrate annotations 0047, gpsr-workbench manage migrate\n"
 )
 
 

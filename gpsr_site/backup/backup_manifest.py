@@ -84,7 +84,7 @@ def read_manifest(archive: zipfile.ZipFile) -> BackupManifest:
         values = json.loads(archive.read(NAME)) if is_small else {}
         form, version = values.pop("format"), values.pop("version")
     except (KeyError, ValueError, AttributeError, TypeError, RecursionError) as error:
-        said = "This is no backup: “manage.py backup FILE” writes one."
+        said = "This is no backup: “gpsr-workbench manage backup FILE” writes one."
         raise Refusal(said, "no_backup") from error
     if (form, version) != (FORMAT, VERSION):
         what = f"{str(form)[:40]} {str(version)[:40]}"
@@ -119,6 +119,6 @@ def newest_migrations() -> dict[str, str]:
     loader = MigrationLoader(connections["default"])
     ours = {key for key in loader.disk_migrations if key[0] in APPS}
     if ours - set(loader.applied_migrations):
-        said = "The database is not that of this version. Run: manage.py migrate"
+        said = "The database is not that of this version. Run: gpsr-workbench manage migrate"
         raise Refusal(said, "not_migrated")
     return {app: max(name for label, name in ours if label == app) for app in APPS}

@@ -55,5 +55,6 @@ def say_unfit_rows() -> str:
     lines = "\n".join(f"{fault.message} {fault.remedy}" for fault in named)
     return (
         f"Rows of an older version do not fit into today's tables:\n{lines}{rest}\n"
-        "Keep a copy of the database, mend these rows with that version or by SQL, then run: manage.py migrate"
+        "Keep a copy of the database, mend these rows with that version or by SQL, then run: "
+        "gpsr-workbench manage migrate"
     )

@@ -25,7 +25,7 @@ class Command(BaseCommand):
         if user is None:
             raise CommandError(
                 f"There is no active account {options['username']!r}. "
-                "Invite somebody on the people page of a world, or run: manage.py createsuperuser"
+                "Invite somebody on the people page of a world, or run: gpsr-workbench manage createsuperuser"
             )
         if options["days"] < 1:
             raise CommandError(f"--days is {options['days']}; a token lasts at least one day.")

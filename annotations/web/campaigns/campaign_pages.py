@@ -73,7 +73,9 @@ def campaign_new(request: WorldRequest, world: World) -> HttpResponse:
         initial["target_per_form"] = target
     form = CampaignForm(world, posted(request), initial=initial)
     if is_quick:
-        form = CampaignForm.of_ten_tasks(world, "Campaign 1")  # pressed twice, the second finds the name taken
+        form = CampaignForm.of_ten_tasks(
+            world, "Campaign 1"
+        )  # pressed twice, the second finds the name taken
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         choice = form.choice

@@ -19,7 +19,7 @@ class Command(migrate.Command):
         if is_before_squash():
             raise CommandError(
                 "This database is older than commit 7eb91d0. Check that commit out, run there: make install, "
-                "manage.py migrate. Then upgrade from it to this version."
+                "gpsr-workbench manage migrate. Then upgrade from it to this version."
             )
         try:
             return super().handle(*args, **options)

@@ -81,12 +81,14 @@ class Command(BaseCommand):
                 User.objects.create_superuser("admin", password=password)
         except IntegrityError:
             self.say(
-                "There is an account “admin” already; manage.py createsuperuser makes another."
+                "There is an account “admin” already; gpsr-workbench manage createsuperuser makes another."
             )
             return
         record_command("make an account", "admin, administrator of the site")
         self.say(f"Created the administrator. Log in as: admin   password: {password}")
-        self.say("The password is not shown again; change it with: manage.py changepassword admin")
+        self.say(
+            "The password is not shown again; change it with: gpsr-workbench manage changepassword admin"
+        )
 
     def load_world(self) -> dict[Criterion, Split]:
         """Load the starter world, where it is not there, and return its splits."""

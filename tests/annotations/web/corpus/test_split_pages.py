@@ -137,4 +137,4 @@ def test_near_duplicates_stand_beside_what_training_has(sample, anna):
 def test_more_comparisons_than_a_page_can_make_are_left_to_the_command(sample, anna, monkeypatch):
     monkeypatch.setattr("annotations.generation.split_statistics.comparisons", lambda *_: 10**9)
     page = anna.get(f"/w/home/splits/{sample.split.pk}/near/").content.decode()
-    assert f"manage.py leakage home {sample.split.name}" in page
+    assert f"manage leakage home {sample.split.name}" in page
