@@ -29,7 +29,7 @@ TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
 TAG = re.compile(r"{% docs (.*?) %}")
 LINKS = sorted(
     {target for path in TEMPLATES for target in TAG.findall(path.read_text(encoding="utf-8"))}
-    - {"guide"}
+    - {"guide_page"}
     | {*GUIDES.values()}
 )
 
