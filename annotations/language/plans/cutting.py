@@ -16,7 +16,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import compress, groupby, pairwise, starmap
+from itertools import compress, groupby, pairwise
 from typing import NamedTuple
 
 from annotations.language.plans.qualifying import Qualified, holds_in
@@ -29,12 +29,14 @@ from annotations.language.texts import (
     COURTESY_OPENINGS,
     DETERMINERS,
     FINISHED_WORDS,
+    HEARD_CLOSINGS,
     JOINT_OPENINGS,
     JOINTS,
     NEGATIONS,
     NO_COMMAND_WORDS,
     NUMBERS,
     PLACE_PREPOSITIONS,
+    PRONOUNS,
     SEQUENCE_NOUNS,
     SEQUENCE_WORDS,
     TELLING_WORDS,
@@ -346,13 +348,16 @@ class _Cut:
         if not COMMAND_NOUNS.isdisjoint(said):
             return False
         parts = [first, *filter(self._is_parted, range(first + 1, last)), last]
-        return any(starmap(self._begins_command, pairwise(parts)))
+        return any(self._begins_command(first, *part) for part in pairwise(parts))
 
     def _is_function(self, word: str) -> bool:
         return word in _FUNCTION or word.isdecimal() or len(word) == 1
 
-    def _begins_command(self, first: int, last: int) -> bool:
-        """Whether words begin as a command does: by a word of the grammar, or "turn off the lights"."""
+    def _begins_command(self, begin: int, first: int, last: int) -> bool:
+        """Whether words begin as a command does: by a word of the grammar, or "turn off the lights".
+
+        ``begin`` is the first word of what is not understood, of which they are a part.
+        """
         while first < last and self.said[first] in _FUNCTION:
             if self.said[first] not in _BEFORE_COMMAND:
                 return False
@@ -362,12 +367,17 @@ class _Cut:
         rest = self.said[first + 1 : last]
         if "you" in rest[:3]:
             return False  # "let me tell you": nobody asks a robot to tell itself
+        # "Find Ann and walk after her", "… and wait": whatever the verb. "Once you've managed it" is told.
+        is_told = not _TOLD.isdisjoint(self.said[begin:first])
+        if not is_told and " ".join(self.said[first:last]) not in HEARD_CLOSINGS:
+            is_last = last in self.ends and self.said[first - 1] in _CONJUNCTIONS
+            if is_last or not _REFERRING.isdisjoint(rest):
+                return True
         if self.said[first] in self.islands.beginnings:
             return any(each not in _FUNCTION | _COUNTING for each in rest)
-        if rest[:1] and rest[0] in BOUNDARIES:
-            rest = rest[1:]
-        has_object = rest[:1] and rest[0] in _DEFINITE and len(rest) > 1
-        return bool(has_object) and self._is_parted(last) and rest[1] not in _COUNTING
+        objects = rest[1:] if rest[:1] and rest[0] in BOUNDARIES - _DEFINITE else rest
+        has_object = objects[:1] and objects[0] in _DEFINITE and len(objects) > 1
+        return bool(has_object) and self._is_parted(last) and objects[1] not in _COUNTING
 
     def _joined(self, ranges: Sequence[_Range]) -> list[_Range]:
         """Join what is not understood with the island that it is part of: no sign or joint parts them."""
@@ -455,9 +465,11 @@ _FUNCTION = (
 ) - COMMAND_NOUNS  # fmt: skip
 _GOING_ON = PLACE_PREPOSITIONS | {"for", "with", "without", "of", "about", "that", "which", "who"}
 _DEFINITE = DETERMINERS - (ARTICLES - {"the"}) - {"this", "that", "any"}
+_REFERRING = frozenset(each for forms in PRONOUNS.values() for each in forms.values())
 _PREDICATING = frozenset({"is", "are", "was", "will", "would", "should", "has"})  # "... is my wish"
 _QUESTIONS = NO_COMMAND_WORDS & {"did", "does", "has", "is", "are"}
 _WHEN = frozenset({"when", "once", "while", "until", "till"})
+_TOLD = _WHEN | {"i", "we", "you", "to"}
 _SUBORDINATING = frozenset({"after", "before", "should"})
 # "When you are done", "once that is finished", "once more" speak of the command before.
 _DONE_WORDS = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everything", "more"}

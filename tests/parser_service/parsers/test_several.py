@@ -78,6 +78,35 @@ def test_nothing_is_cut_out_of_what_asks_for_something_else(said, understood):
     assert [inside(each.text) for each in pieces if each.is_understood] == understood
 
 
+TWO = ("greet Maria in the lobby", "bring me the cocoa")
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        *(" and walk after her", " and tickle her", ", then polish her shoes", " and wait there"),
+        *(" and sing", " and shake hands", ", then keep an eye on it", " and after that hug him"),
+        *(", accompany them", " and leave", ", wait for her and bring me the quince"),
+    ],
+)
+def test_what_is_asked_last_is_not_dropped_whatever_its_verb(asked):
+    pieces = pieces_of(" and ".join(TWO) + asked, oracle())
+    assert [each.text for each in pieces[:2]] == [*TWO]
+    assert not pieces[2].is_understood
+
+
+@pytest.mark.parametrize(
+    "closing",
+    [
+        *(" and that is all", ", please", ", thank you", " and be quick", " and hurry up"),
+        *(" and quickly", ", then you are done", " and we are good", " and do it quickly"),
+    ],
+)
+def test_a_closing_asks_for_nothing(closing):
+    pieces = pieces_of(" and ".join(TWO) + closing, oracle())
+    assert all(each.is_understood for each in pieces) and len(pieces) == 2
+
+
 def test_a_command_of_the_language_stays_whole():
     for command in commands():
         (piece,) = pieces_of(command, oracle())
