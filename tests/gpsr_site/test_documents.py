@@ -208,7 +208,9 @@ def test_a_search_takes_all_words_and_nothing_for_none():
 def test_a_word_is_found_as_it_stands_after_letters_that_fold_to_two(tmp_path, settings):
     (tmp_path / "guides").mkdir()
     (tmp_path / "index.md").write_text("# All\n\n[One](guides/one.md)\n")
-    (tmp_path / "guides" / "one.md").write_text("# One\n\nDas Weißbier steht im *Schrank* <b>dort</b>.\n")
+    (tmp_path / "guides" / "one.md").write_text(
+        "# One\n\nDas Weißbier steht im *Schrank* <b>dort</b>.\n"
+    )
     settings.DOCS_DIR = tmp_path
     [hit] = search_documents("schrank")
     assert (hit.before, hit.word, hit.after) == ("Das Weißbier steht im ", "Schrank", " dort.")
