@@ -30,8 +30,12 @@ INDEX = "index"
 # What a document of each folder is called in a link.
 SHELVES = {"guides": "Guide", "reference": "Reference", "design": "Design", "research": "Research"}
 IMAGE_KINDS = {".png", ".svg"}
+MOST_WORDS = 12  # that a search looks for
+MOST_HITS = 30
+EXCERPT = 90  # characters before and after the first word of a hit
 # Before the ids of headings: the frame of a page has ids of its own, such as "keys".
 ANCHOR = "doc-"
+_LISTED = re.compile(r"\]\(([\w-]+/[\w-]+)\.md\)")  # on the first page
 _ELSEWHERE = re.compile(r"[a-z][a-z0-9+.-]*:", re.IGNORECASE)
 
 
@@ -45,12 +49,26 @@ class Heading:
 
 
 @dataclass(frozen=True, slots=True)
+class Passage:
+    """A heading of a document with the plain text below it, up to the next heading."""
+
+    heading: Heading
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Document:
     """A document of ``docs/``. ``name`` is its path there without the ending, such as ``guides/writing``."""
 
     name: str
     headings: tuple[Heading, ...]
     html: SafeString
+    passages: tuple[Passage, ...]
+
+    @property
+    def url(self) -> str:
+        """Its address."""
+        return address_of(self.name)
 
     @property
     def title(self) -> str:
@@ -70,6 +88,55 @@ class Document:
     def heading(self, anchor: str) -> Heading | None:
         """Return the heading that a link in a document names; None where there is none."""
         return next((each for each in self.headings if each.anchor == ANCHOR + anchor), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """A passage that holds all words of a search, cut before, at and after the first of them."""
+
+    document: Document
+    heading: Heading
+    before: str
+    word: str
+    after: str
+
+    @property
+    def url(self) -> str:
+        """The address of the heading."""
+        return f"{self.document.url}#{self.heading.anchor}"
+
+
+def search_documents(words: str) -> list[Hit]:
+    """Return the passages that hold all of the words, in any case: those with them in a heading first.
+
+    At most ``MOST_HITS``; only the first ``MOST_WORDS`` words count.
+    """
+    wanted = [re.compile(re.escape(word), re.IGNORECASE) for word in words.split()[:MOST_WORDS]]
+    found = []
+    for document in chain.from_iterable(shelves().values()) if wanted else ():
+        for passage in document.passages:
+            heads = f"{document.title} {passage.heading.text}"
+            if all(word.search(heads) or word.search(passage.text) for word in wanted):
+                in_heads = sum(bool(word.search(heads)) for word in wanted)
+                found.append((-in_heads, _hit(document, passage, wanted)))
+    return [hit for _, hit in sorted(found, key=lambda each: each[0])[:MOST_HITS]]
+
+
+def _hit(document: Document, passage: Passage, wanted: list[re.Pattern[str]]) -> Hit:
+    text = passage.text
+    match = next(filter(None, (word.search(text) for word in wanted)), None)
+    start, end = match.span() if match else (0, 0)
+    before, after = text[max(0, start - EXCERPT) : start], text[end : end + EXCERPT]
+    if start > EXCERPT:
+        before = f"… {before.partition(' ')[2]}"
+    if end + EXCERPT < len(text):
+        after = f"{after.rpartition(' ')[0]} …"
+    return Hit(document, passage.heading, before, text[start:end], after)
+
+
+def shelves() -> dict[str, list[Document]]:
+    """Return the documents of each shelf, in the order of the first page."""
+    return _shelves(settings.DOCS_DIR)
 
 
 def find_document(name: str) -> Document | None:
@@ -99,6 +166,17 @@ def _files(folder: Path) -> dict[str, Path]:
     shelves = [path for shelf in SHELVES for path in (folder / shelf).glob("*.md")]
     files = [path for path in (folder / f"{INDEX}.md", *shelves) if path.is_file()]
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in files}
+
+
+@cache
+def _shelves(folder: Path) -> dict[str, list[Document]]:
+    files = _files(folder)
+    names = _LISTED.findall(files[INDEX].read_text(encoding="utf-8")) if INDEX in files else []
+    documents = [_read(name, files[name]) for name in dict.fromkeys(names) if name in files]
+    return {
+        shelf: [each for each in documents if each.name.startswith(f"{shelf}/")]
+        for shelf in SHELVES
+    }
 
 
 @cache
@@ -133,11 +211,12 @@ _MARKDOWN = MarkdownIt("commonmark", {"html": True}, renderer_cls=_Renderer).ena
 def _read(name: str, path: Path) -> Document:
     tokens = _MARKDOWN.parse(path.read_text(encoding="utf-8"))
     headings = tuple(_mark_headings(tokens))
+    passages = tuple(_passages(tokens, headings))
     for token in chain.from_iterable((each, *(each.children or ())) for each in tokens):
         _lead_to_pages(token, name)
         markdown.align_by_class(token)
     html: str = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
-    return Document(name, headings, mark_safe(html))
+    return Document(name, headings, mark_safe(html), passages)
 
 
 def _mark_headings(tokens: Sequence[Token]) -> Iterator[Heading]:
@@ -155,6 +234,21 @@ def _mark_headings(tokens: Sequence[Token]) -> Iterator[Heading]:
         taken.add(anchor)
         opening.attrSet("id", anchor)
         yield Heading(int(opening.tag[1]), anchor, text)
+
+
+def _passages(tokens: Sequence[Token], headings: Sequence[Heading]) -> Iterator[Passage]:
+    at = [index for index, token in enumerate(tokens) if token.type == "heading_open"]
+    for heading, (start, end) in zip(headings, pairwise([*at, len(tokens)]), strict=True):
+        text = " ".join(map(_plain, tokens[start + 3 : end]))  # after the heading's own three
+        yield Passage(heading, " ".join(text.split()))
+
+
+def _plain(token: Token) -> str:
+    if token.type == "inline":
+        return "".join(map(_plain, token.children or ()))
+    if token.type in ("softbreak", "hardbreak"):
+        return " "
+    return token.content if token.type in ("text", "code_inline", "fence", "code_block") else ""
 
 
 def slug_of(text: str) -> str:

@@ -7,13 +7,13 @@ from django.http import FileResponse, Http404, HttpRequest, HttpResponse
 from django.shortcuts import render
 
 from annotations.people.access import plain_view
-from gpsr_site.documents import INDEX, find_document, find_image
+from gpsr_site.documents import INDEX, find_document, find_image, search_documents, shelves
 
 
 @login_not_required
 @plain_view()
 def documents(request: HttpRequest) -> HttpResponse:
-    """Show the first page, which lists all documents."""
+    """Show the first page, which lists all documents, or what they have for the words in ``q``."""
     return _show(request, INDEX)
 
 
@@ -38,4 +38,11 @@ def _show(request: HttpRequest, name: str) -> HttpResponse:
     document = find_document(name)
     if document is None:
         raise Http404("There is no such document.")
-    return render(request, "gpsr_site/document.html", {"document": document})
+    words = request.GET.get("q", "").strip()
+    context = {
+        "document": document,
+        "shelves": shelves(),
+        "words": words,
+        "hits": search_documents(words),
+    }
+    return render(request, "gpsr_site/document.html", context)

@@ -20,6 +20,7 @@ from gpsr_site.pages.rail import GROUPS, RailEntry, way_to
 
 MOST_UNREAD = 99  # the top bar says that there are more
 CLOSED_NOTICE = "closed_notice"  # the cookie that names the notice which the reader has closed
+LAST_WORLD = "last_world"  # the cookie that names the world of the last page: static/src/last-world.js writes it
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,24 +71,36 @@ def _count_unread(user: User) -> int:
 
 
 def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
-    """Return what stands around a page of a world; outside of any world nothing does."""
+    """Return what stands around a page of a world. Outside of any world the rail is that of the last one."""
     world: World | None = getattr(request, "world", None)
     duties: frozenset[Duty] = getattr(request, "duties", frozenset())
     can = {duty.value: duty in duties for duty in Duty}
     if world is None:
-        return {"world": None, "can": can, "rail": [], "tabs": [], "trail": [], "page_name": ""}
+        last: Any = SimpleLazyObject(lambda: _last_world(request))
+        rail = SimpleLazyObject(lambda: _rail(last, counts_of(last), ()) if last else [])
+        return {
+            **{"world": None, "rail_world": last, "can": can, "rail": rail},
+            **{"tabs": [], "trail": [], "page_name": ""},
+        }
     # One count for the rail and the tabs, once one of them is drawn.
     counts: Any = SimpleLazyObject(lambda: getattr(request, "counts", None) or counts_of(world))
     page, way = _way_of(request)
     here = way[-1] if way and way[-1].page == page else None
     return {
         "world": world,
+        "rail_world": world,
         "can": can,
         "rail": SimpleLazyObject(lambda: _rail(world, counts, way)),
         "tabs": SimpleLazyObject(lambda: list(_tabs(world, counts, duties, way)) if here else []),
         "trail": [Crumb(entry.label, _url_of(world, entry)) for entry in way if entry is not here],
         "page_name": way[-1].label if way else "",
     }
+
+
+def _last_world(request: HttpRequest) -> World | None:
+    """Return the world that the reader saw last; None where there is none, or they may no longer see it."""
+    name = request.COOKIES.get(LAST_WORLD)
+    return World.objects.visible_to(request.user).filter(name=name).first() if name else None
 
 
 def _way_of(request: HttpRequest) -> tuple[str, tuple[RailEntry, ...]]:

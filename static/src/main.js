@@ -4,6 +4,7 @@ import "./submitted.js";
 import "./keys.js";
 import "./sheet.js";
 import "./time-zone.js";
+import "./last-world.js";
 import "./remembered.js";
 import "./guidelines.js";
 import "./menus.js";

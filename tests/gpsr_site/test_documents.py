@@ -19,6 +19,8 @@ from gpsr_site.documents import (
     address_of,
     find_document,
     find_image,
+    search_documents,
+    shelves,
 )
 from gpsr_site.overview.first_steps import GUIDES
 
@@ -167,6 +169,56 @@ def test_a_document_that_is_not_there_leads_to_the_list(annotator, client):
     client.force_login(annotator)
     page = client.get("/docs/guides/nothing/")
     assert page.context["where"] == "/docs/"
+
+
+def test_the_tree_has_every_document_once_in_the_order_of_the_list():
+    names = [each.name for documents in shelves().values() for each in documents]
+    assert sorted([*names, INDEX]) == FILES
+    assert names[0] == "guides/first-steps"
+    listed = [target for target in parts_of(INDEX).leads_to if target.startswith("/docs/")]
+    assert [address_of(name) for name in names] == listed[1:]  # the introduction links one as well
+
+
+def test_the_tree_shows_where_one_is(nobody, db):
+    page = nobody.get("/docs/guides/splits/").content.decode()
+    assert page.count('aria-current="page">Splits</a>') == 1
+    assert page.count("<details open>") == 1  # of its shelf
+
+
+def test_a_search_finds_the_passage_in_any_case_and_leads_to_its_heading():
+    first, *_ = search_documents("TREES that")
+    assert (first.document.name, first.heading.text) == ("guides/robots", "Trees that try again")
+    assert first.word.lower() in ("trees", "that")
+    name, _, anchor = first.url.partition("#")
+    assert anchor in parts_of(name_at(name)).ids
+
+
+def test_a_search_takes_all_words_and_nothing_for_none():
+    assert search_documents("") == search_documents("  ") == []
+    assert search_documents("systemd qqqzzz") == []
+    both = search_documents("systemd worker")
+    assert both and all(
+        "systemd" in f"{each.heading.text}{passage.text}".lower()
+        for each in both
+        for passage in each.document.passages
+        if passage.heading == each.heading
+    )
+
+
+def test_a_word_is_found_as_it_stands_after_letters_that_fold_to_two(tmp_path, settings):
+    (tmp_path / "guides").mkdir()
+    (tmp_path / "index.md").write_text("# All\n\n[One](guides/one.md)\n")
+    (tmp_path / "guides" / "one.md").write_text(
+        "# One\n\nDas Weißbier steht im *Schrank* <b>dort</b>.\n"
+    )
+    settings.DOCS_DIR = tmp_path
+    [hit] = search_documents("schrank")
+    assert (hit.before, hit.word, hit.after) == ("Das Weißbier steht im ", "Schrank", " dort.")
+
+
+def test_what_is_searched_for_is_shown_as_text(nobody, db):
+    page = nobody.get("/docs/", {"q": "<b>one & [two"}).content.decode()
+    assert "&lt;b&gt;one &amp; [two" in page and "<b>one" not in page
 
 
 def test_every_page_leads_to_the_documents(sample, annotator, client):

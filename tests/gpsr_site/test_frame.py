@@ -14,6 +14,7 @@ from django.utils import timezone
 from annotations.models import StoredProblem, World
 from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.workers import workers_now
+from gpsr_site.pages.frame import LAST_WORLD
 from parser_service.models import Promotion, Worker
 from parser_service.runs import run_requests
 
@@ -159,6 +160,28 @@ def test_a_page_below_belongs_to_its_entry(sample, annotator, client):
     client.force_login(annotator)
     page = client.get(f"/w/home/runs/{sample.run.pk}/predictions/")
     assert current_entries(page) == ["Runs"]
+
+
+@pytest.mark.parametrize("path", ["/docs/", "/docs/guides/splits/", "/account/", "/inbox/"])
+def test_a_page_outside_of_worlds_keeps_the_rail_of_the_last_one(path, sample, annotator, client):
+    client.force_login(annotator)
+    assert entries_of(client.get(path)) == {}
+    client.cookies[LAST_WORLD] = sample.world.name
+    page = client.get(path)
+    assert entries_of(page)["Commands"].count == 3 and current_entries(page) == []
+    assert page.context["world"] is None
+
+
+@pytest.mark.parametrize("name", ["laboratory", "nowhere", "", "a'; --", "\\303\\251"])
+def test_the_last_world_is_one_that_the_reader_may_see(
+    name, sample, other_sample, annotator, client
+):
+    client.cookies[LAST_WORLD] = sample.world.name
+    assert entries_of(client.get("/docs/")) == {}  # nobody is logged in
+    client.force_login(annotator)
+    client.cookies[LAST_WORLD] = name
+    page = client.get("/docs/")
+    assert entries_of(page) == {} and "laboratory" not in page.content.decode()
 
 
 def test_a_page_about_any_row_belongs_to_the_list_of_its_kind(sample, annotator, client):
