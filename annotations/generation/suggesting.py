@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
+from random import Random
 
 from annotations.generation.kept_expansions import checker_of, expansions_of, problems_of
 from annotations.language.forms import canonicalize, print_sequence, read_form, to_template
 from annotations.language.grammar import CHECK_STEPS, Budget, passages
+from annotations.language.grounding import ground
 from annotations.language.templates import (
     MOST_SUGGESTIONS,
+    Derivation,
     FormSuggester,
     PatternMaker,
     TaskCategory,
@@ -22,7 +25,7 @@ from annotations.language.templates import (
     read_sides,
     transfer_form,
 )
-from annotations.language.texts import MAX_PATTERN, LanguageError
+from annotations.language.texts import MAX_PATTERN, LanguageError, Position
 from annotations.language.world import Predicate, gloss
 from annotations.models import SemanticTemplate as StoredTemplate
 from annotations.models import TaskCategory as StoredCategory
@@ -32,6 +35,7 @@ from annotations.rows.from_rows import (
     classes_of,
     composition_of,
     grammar_of,
+    ontology_of,
     predicates_of,
     ready_templates,
     task_categories,
@@ -41,6 +45,7 @@ from annotations.rows.from_rows import (
 MOST_COMMAND = 500  # characters
 MOST_COMPARED = 20_000  # derivations of the grammar
 MOST_LOOKED_AT = 2_000  # commands of a pattern
+MOST_DERIVED = 100  # of them, among which the command is looked for whose entities are said
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +152,44 @@ def moved_form(category: StoredCategory, source: StoredTemplate, target: StoredT
     except LanguageError:
         return source.form
     return to_template(form) if form is not None else source.form
+
+
+def say_with_entities(
+    world: World,
+    category: StoredCategory,
+    pattern: str,
+    wanted: str,
+    suggestions: Sequence[SuggestedForm],
+) -> tuple[str, list[SuggestedForm]]:
+    """Return a command of the pattern with entities in it, and the suggestions said with the same entities.
+
+    The command is that of ``wanted`` if it is among the first of the pattern, else the first. It is empty, and the
+    suggestions stay as they are, where none can be drawn.
+    """
+    ontology, declared = ontology_of(world), predicates_of(world)
+    said, example = [], ""
+    try:
+        expander = TemplateExpander(grammar_of(category), composition_of(category))
+        for each in suggestions:
+            derivation = _derivation_for(expander, pattern, each.text, wanted)
+            grounded = ground(derivation.symbols, derivation.form, ontology, Random(0))
+            sentence = gloss(grounded.form, declared, ontology.classes, ontology.class_of_text)
+            said.append(replace(each, gloss=sentence))
+            example = grounded.text
+    except LanguageError:
+        return "", list(suggestions)
+    return example, said
+
+
+def _derivation_for(expander: TemplateExpander, pattern: str, form: str, wanted: str) -> Derivation:
+    """Return the derivation of ``wanted`` if it is among the first ``MOST_DERIVED``, else the first. Raises
+    LanguageError where there is none."""
+    stream = expander.derivations(make_template(pattern.strip(), form), budget=Budget(CHECK_STEPS))
+    derivations = list(islice(stream, MOST_DERIVED if wanted else 1))
+    if not derivations:
+        raise LanguageError("the pattern makes no command", Position("pattern"))
+    same = (each for each in derivations if each.anonymized_text == wanted)
+    return next(same, derivations[0])
 
 
 def command_for(category: StoredCategory, pattern: str, wanted: str = "") -> str:

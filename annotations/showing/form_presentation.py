@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -72,12 +72,15 @@ def shown(text: str) -> ShownForm:
     return ShownForm(to_reading(form), to_corpus(form), to_template(form))
 
 
-def gloss_of(world: World, form: Form) -> str:
-    """Write ``form`` as an English sentence, with the glosses of the world's predicates."""
+def gloss_of(world: World, form: Form, named: Mapping[str, str] | None = None) -> str:
+    """Write ``form`` as an English sentence, with the glosses of the world's predicates.
+
+    ``named`` gives the classes of texts in it that name entities.
+    """
     if not hasattr(world, "declared"):  # one query a page, however many forms it shows
         world.declared = predicates_of(world)
         world.classes = classes_of(world)
-    return gloss(form, world.declared, world.classes)
+    return gloss(form, world.declared, world.classes, named)
 
 
 @lru_cache(maxsize=8192)

@@ -34,6 +34,7 @@ from annotations.showing.form_presentation import (
     wildcard_class,
 )
 from annotations.showing.markdown import rendered
+from annotations.showing.own_entities import OwnEntities
 
 register = template.Library()
 for written in (
@@ -168,21 +169,25 @@ def logical_form(
     tools: bool = False,
     url: str = "",
     tree: bool = False,
+    own: OwnEntities | None = None,
 ) -> dict[str, Any]:
     """Show a form in the notation that the page shows.
 
-    With ``gloss`` its English sentence stands beneath, linked to ``url`` where one is given; with
-    ``tree`` the form as a tree.
+    With ``gloss`` its English sentence stands beneath, linked to ``url`` where one is given, and with the entities of
+    the utterance that it is for, ``own``; with ``tree`` the form as a tree.
     """
     form = shown(text)
-    if gloss and (tree_of_text := form_of(text)):
-        form = replace(form, gloss=gloss_of(context["world"], tree_of_text))
+    if gloss:
+        form = replace(form, gloss=gloss_of_form(context, text, own))
     return {"form": form, "tools": tools, "url": url, "tree": tree}
 
 
 @register.simple_tag(takes_context=True)
-def gloss_of_form(context: Any, text: str) -> str:
-    """Write a form as an English sentence; empty for what is not a form."""
+def gloss_of_form(context: Any, text: str, own: OwnEntities | None = None) -> str:
+    """Write a form as an English sentence, with the entities of the utterance that it is for; empty for what is not a
+    form."""
+    if own:
+        return own.english(text)
     form = form_of(text)
     return gloss_of(context["world"], form) if form else ""
 

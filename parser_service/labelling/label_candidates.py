@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from itertools import chain, zip_longest
 
 from annotations.labelling.form_check import canonical_label
-from annotations.language.texts import LanguageError
-from annotations.models import Utterance
+from annotations.language.texts import LanguageError, Refusal
+from annotations.models import JobKind, Utterance, UtteranceStatus
 from parser_service.labelling.known_forms import derived_forms, nearest_forms
 from parser_service.parsers.interface import Candidate
 from parser_service.parsers.registry import title_of
+from parser_service.serving.default_runs import best_run
 
 MOST_CANDIDATES = 9  # one for each of the keys 1 to 9
 NOW, GRAMMAR, NEIGHBOUR = "the answer now", "grammar", "nearest utterance"
@@ -49,6 +50,19 @@ def candidates_for(utterance: Utterance) -> tuple[LabelCandidate, ...]:
             sources.setdefault(form, []).append(source)
     first = list(sources.items())[:MOST_CANDIDATES]
     return tuple(LabelCandidate(form, tuple(dict.fromkeys(names))) for form, names in first)
+
+
+def awaited_parser(utterance: Utterance) -> str:
+    """Return the title of the parser whose answer to ``utterance`` a worker is to store; empty where none comes."""
+    jobs = utterance.world.jobs.active().filter(kind=JobKind.PROPOSE)
+    if utterance.status != UtteranceStatus.UNLABELLED or not jobs.exists():
+        return ""
+    try:
+        run = best_run(utterance.world)
+    except Refusal:
+        return ""  # there is no parser
+    is_answered = utterance.proposals.filter(run=run.pk).exists()
+    return "" if is_answered else title_of(run.parser)
 
 
 def is_label(form: str) -> bool:

@@ -9,6 +9,7 @@ from annotations.generation.suggesting import (
     SuggestedForm,
     add_answers,
     command_for,
+    say_with_entities,
     suggest_forms,
 )
 from annotations.labelling.proposal_requests import last_request, request_answer
@@ -26,11 +27,13 @@ MOST_NEIGHBOURS = 3
 class PatternSuggestions:
     """Forms for a pattern, the most likely first, and the command that parsers are asked about.
 
+    The forms are said with the entities of ``example``, a command of the pattern; with classes where that is empty.
     ``waits_for`` is the title of the parser that a worker asks; ``reason`` says why it gives no form.
     """
 
     forms: tuple[SuggestedForm, ...] = ()
     command: str = ""
+    example: str = ""
     waits_for: str = ""
     reason: str = ""
 
@@ -63,10 +66,11 @@ def suggest_with_parsers(
         for each in nearest_forms(world, command, MOST_NEIGHBOURS)
     )
     both = add_answers(world, category, pattern, forms, [best.answers, nearest])
+    example, both = say_with_entities(world, category, pattern, command, both)
     is_used = any(each in best.answers for form in both for each in form.answers)
     does_not_fit = bool(best.answers) and not is_used
     reason = f"{best.answers[0].parser} gives no form that fits." if does_not_fit else best.reason
-    return PatternSuggestions(tuple(both), command, best.waits_for, reason)
+    return PatternSuggestions(tuple(both), command, example, best.waits_for, reason)
 
 
 def _answer_of_best(world: World, command: str, by: User | None) -> _Answer:

@@ -13,6 +13,7 @@ function fill(place, html) {
 }
 
 function tellOthers(place) {
+  place.dispatchEvent(new CustomEvent("content:added", { bubbles: true }));
   place.dispatchEvent(new CustomEvent("htmx:load", { bubbles: true, detail: { elt: place } }));
 }
 
@@ -29,6 +30,7 @@ class LabelPage {
     this.place = page.querySelector("[data-label-place]");
     this.strip = page.querySelector("[data-label-strip]");
     this.notices = page.querySelector("[data-label-notices]");
+    this.since = performance.now();
     this.queue = new AnswerQueue(
       page.dataset.answersOf,
       (reply, sent) => this.onReply(reply, sent),
@@ -56,7 +58,7 @@ class LabelPage {
     const { item } = this;
     if (reading) setTimeout(() => item?.setAttribute("data-asks", ""), reading);
     else item?.setAttribute("data-asks", "");
-    this.since = performance.now();
+    if (reading) this.since = performance.now();
     this.place.querySelectorAll(".label-choice code").forEach(onFormText);
     const begun = [...this.place.querySelectorAll("template[data-label-panel]")].find(hasDraft);
     if (begun) this.openPanel(begun.dataset.labelPanel);
@@ -224,6 +226,7 @@ class LabelPage {
     const opener = event.target.closest("[data-label-open]");
     if (opener) this.openPanel(opener.dataset.labelOpen);
     if (event.target.closest("[data-label-close]")) this.closePanel();
+    if (event.target.closest("[data-label-again]")) this.show(this.fetchItem({ utterance: this.item.dataset.item }));
   }
 
   openPanel(name) {
@@ -257,7 +260,7 @@ class LabelPage {
     if (key === "Escape") return event.defaultPrevented || this.closePanel();
     if (event.repeat || event.defaultPrevented || event.target.closest(TYPING)) return;
     const opens = this.isAsking && { e: "edit", d: "dispute", m: "mend" }[key];
-    const button = this.isAsking && /^[1-9us]$/.test(key) && this.item.querySelector(`[data-key="${key}"]`);
+    const button = this.isAsking && /^[1-9usb]$/.test(key) && this.item.querySelector(`[data-key="${key}"]`);
     if (opens) this.openPanel(opens);
     else if (button) button.click();
     else if (key === "z") this.takeLastBack();

@@ -8,6 +8,7 @@ from annotations.language.grounding.deanonymizer import (
     FormSlots,
     Slot,
     deanonymize,
+    entities_of,
     fill_all,
     filled,
     ground_like,

@@ -243,9 +243,8 @@ def ground_like(form: Form, label: Form, grounded: Form) -> Form:
     tokens of the class: then they keep their order. The other tokens stay as they are.
     """
     known: dict[str, list[str]] = defaultdict(list)
-    for slot in slots_of(label):
-        if text := _text_at(grounded, slot):
-            known[slot.entity_class].append(text)
+    for entity_class, text in entities_of(label, grounded):
+        known[entity_class].append(text)
     slots = [slot for slot in slots_of(form) if slot.entity_class]
     for entity_class, entities in known.items():
         places = [slot.path for slot in slots if slot.entity_class == entity_class]
@@ -255,6 +254,12 @@ def ground_like(form: Form, label: Form, grounded: Form) -> Form:
             for path, entity in zip(places, entities, strict=True):
                 form = filled(form, path, entity)
     return form
+
+
+def entities_of(label: Form, grounded: Form) -> list[tuple[str, str]]:
+    """Return class and text of what ``grounded`` has in the place of each class token of ``label``, in order."""
+    texts = ((slot.entity_class, _text_at(grounded, slot)) for slot in slots_of(label))
+    return [(entity_class, text) for entity_class, text in texts if text]
 
 
 def ground_text(text: str, label: Form, grounded: Form) -> str:

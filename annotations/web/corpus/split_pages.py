@@ -18,6 +18,7 @@ from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world
 from annotations.people.allowances import may_take_long
 from annotations.rows.occurrences import command_of_example, logical_form_of, paraphrase_of_example
 from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.own_entities import OwnEntities
 from annotations.web.corpus.split_filters import (
     MOST_CHANGES,
     MOST_SHOWN,
@@ -136,6 +137,7 @@ def example(request: WorldRequest, world: World, split: int, pk: int) -> HttpRes
     row = get_object_or_404(rows, pk=pk)
     context = {
         "row": row,
+        "own": OwnEntities.of_pair(world, row),
         "command": command_of_example(row),
         "paraphrase": paraphrase_of_example(row),
         "logical_form": logical_form_of(world.pk, row.logical_form),

@@ -27,6 +27,7 @@ from annotations.models import Duty, Label, Upload, Utterance, World
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long, takes_files
 from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.editing.undo import say_with_undo
@@ -106,7 +107,8 @@ def utterance(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     row = get_object_or_404(world.utterances.select_related("created_by"), pk=pk)
     accepted = row.accepted_label
     labels = row.labels.visible_to(request.user).select_related("annotator").order_by("-pk")
-    context = {"row": row, "labels": labels, "accepted": accepted}
+    own = OwnEntities.of_utterance(row)
+    context = {"row": row, "own": own, "labels": labels, "accepted": accepted}
     return render(request, "annotations/corpus/utterance.html", context)
 
 

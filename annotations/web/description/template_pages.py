@@ -22,6 +22,7 @@ from annotations.generation.suggesting import (
     MOST_COMMAND,
     commands_of,
     duplicate_of,
+    say_with_entities,
     suggest_forms,
     suggest_nearest,
     suggest_pattern,
@@ -324,9 +325,10 @@ def suggestions_for_command(request: WorldRequest, world: World) -> dict[str, An
         return about
     pattern = suggest_pattern(world, category, command)
     suggestions = suggest_forms(world, category, pattern)
+    example, suggestions = say_with_entities(world, category, pattern, command, suggestions)
     first = suggestions[0].text if suggestions and suggestions[0].is_sure else ""
     initial = {"task_category": category, "pattern": pattern, "form": first}
-    shown = {"suggestions": suggestions, "chosen": first, "is_first": True}
+    shown = {"suggestions": suggestions, "example": example, "chosen": first, "is_first": True}
     return {**about, **shown, "initial": initial}
 
 

@@ -41,6 +41,7 @@ from annotations.people.access import (
     world_view,
 )
 from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.own_entities import OwnEntities
 from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted
 from annotations.web.labelling.queueing_filters import WorkItemFilters
@@ -122,6 +123,7 @@ def _item_page(
         "mine": mine,
         "page": page_of(item),
         "labels": labels,
+        "own": OwnEntities.of_utterance(item.utterance) if labels and item.utterance else None,
         "form": form or (SettleForm(labels) if mine and labels else None),
         "assign_form": AssignForm(item.world),
     }

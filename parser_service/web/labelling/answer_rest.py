@@ -14,6 +14,7 @@ from annotations.generation.suggesting import MOST_COMMAND
 from annotations.language.texts import MAX_FORM, MAX_PATTERN, LanguageError
 from annotations.models import Duty, Scope, TaskCategory, Utterance
 from annotations.models.corpus import MOST_CHARACTERS
+from annotations.showing.own_entities import OwnEntities
 from annotations.web.description.template_rest import category_called
 from annotations.web.rest.fields import Fields, LineField
 from annotations.web.rest.idempotency import once
@@ -85,10 +86,13 @@ class SuggestedFormSerializer(serializers.Serializer[Any]):
 
 
 class SuggestionsSerializer(serializers.Serializer[Any]):
-    """Forms, the likely one first. While ``waits_for`` names a parser, a worker asks it: ask again."""
+    """Forms, the likely one first. While ``waits_for`` names a parser, a worker asks it: ask again.
+
+    Their English has the entities of ``example``, a command of the pattern."""
 
     forms = SuggestedFormSerializer(many=True)
     command = serializers.CharField(allow_blank=True)
+    example = serializers.CharField(allow_blank=True)
     waits_for = serializers.CharField(allow_blank=True)
     reason = serializers.CharField(allow_blank=True)
 
@@ -110,9 +114,11 @@ class SuggestForms(WorldRoute):
 
 
 class LabelCandidateSerializer(serializers.Serializer[Any]):
-    """A form, and which sources give it: the answer now, the grammar, parsers, the nearest utterance."""
+    """A form, its English sentence with the entities of the utterance, and which sources give it: the answer now,
+    the grammar, parsers, the nearest utterance."""
 
     form = serializers.CharField()
+    english = serializers.CharField()
     sources = serializers.ListField(child=serializers.CharField())
 
 
@@ -135,4 +141,10 @@ class CandidatesOfUtterance(WorldRoute):
 
     @extend_schema(operation_id="utterance_candidates", responses={200: LabelCandidates})
     def get(self, request: ApiRequest, **kwargs: object) -> Response:
-        return Response(LabelCandidates({"results": candidates_for(self.get_object())}).data)
+        row = self.get_object()
+        own = OwnEntities.of_utterance(row)
+        results = [
+            {"form": each.form, "english": own.english(each.form), "sources": each.sources}
+            for each in candidates_for(row)
+        ]
+        return Response(LabelCandidates({"results": results}).data)

@@ -29,6 +29,7 @@ from annotations.models import (
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.occurrences import examples_of_pair
 from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from annotations.web.labelling.queueing_filters import AuditFindingFilters
 from parser_service.labelling.audit_job import request_audit
@@ -156,12 +157,21 @@ def _context_of(request: WorldRequest, finding: AuditFinding | None) -> dict[str
     is_open = AuditFinding.objects.open().filter(pk=finding.pk).exists()
     return {
         **context,
+        "own": own_entities(finding),
         "reasons": finding.reasons.all(),
         "examples": examples[:MOST_SPLITS],
         "decision": finding.decision,
         "may_decide": may_decide and is_open,
         "is_outdated": finding.status == FindingStatus.OPEN and not is_open,
     }
+
+
+def own_entities(finding: AuditFinding) -> OwnEntities:
+    """Return what the pair of a finding names."""
+    if finding.utterance:
+        return OwnEntities.of_utterance(finding.utterance)
+    assert finding.paraphrase is not None  # a finding has one of the two
+    return OwnEntities.of_pair(finding.world, finding.paraphrase)
 
 
 def _to(request: WorldRequest, world: World, finding: AuditFinding | None) -> HttpResponse:

@@ -27,10 +27,11 @@ from annotations.language.texts import Refusal, find_words
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.showing.listing import Listing
+from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from annotations.web.corpus.corpus_filters import UtteranceFilters
 from annotations.web.corpus.utterance_pages import SORTS
-from parser_service.labelling.label_candidates import candidates_for
+from parser_service.labelling.label_candidates import PERSON, awaited_parser, candidates_for
 
 MOST_ENTITIES = 1_000  # offered where somebody says what words name
 MOST_WITHOUT = 50
@@ -56,8 +57,16 @@ def label_page(request: WorldRequest, world: World) -> HttpResponse:
 @never_cache
 @world_view(Duty.ANNOTATE)
 def label_item(request: WorldRequest, world: World) -> HttpResponse:
-    """Return the next utterance alone; ``without`` are the keys of those that the page has already."""
+    """Return the next utterance alone; ``without`` are the keys of those that the page has already.
+
+    A page that waits for a parser asks with ``waiting`` whether the candidates of its utterance have come: 204 before.
+    """
     row = _find_asked(request, world, _listing(request, world))
+    if "waiting" in request.GET and row is not None:
+        if awaited_parser(row):
+            return HttpResponse(status=HTTPStatus.NO_CONTENT)
+        context = {"has_come": row.proposals.exclude(source=PERSON).exists()}
+        return render(request, "parser_service/labelling/_label_waits.html", context)
     return render(request, "parser_service/labelling/_label_item.html", _item(request, row))
 
 
@@ -171,7 +180,14 @@ def _item(request: WorldRequest, row: Utterance | None) -> dict[str, Any]:
         return {"row": None, "n_skipped": skipped.count()}
     part = assignment_in(row, request.user)
     given = None if part else answer_waiting(row, request.user)
-    return {"row": row, "candidates": candidates_for(row), "part": part, "given": given}
+    return {
+        "row": row,
+        "own": OwnEntities.of_utterance(row),
+        "candidates": candidates_for(row),
+        "awaited": awaited_parser(row),
+        "part": part,
+        "given": given,
+    }
 
 
 def _strip(request: WorldRequest, world: World) -> dict[str, Any]:

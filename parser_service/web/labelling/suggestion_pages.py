@@ -30,6 +30,7 @@ def template_suggestions(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "suggested": suggested,
         "suggestions": suggested.forms,
+        "example": suggested.example,
         "command": command,
         "chosen": form["form"].value(),
         "has_pattern": bool(pattern),

@@ -14,6 +14,7 @@ from django_htmx.http import replace_url
 
 from annotations.models import Duty, Example, World
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
+from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
@@ -62,6 +63,7 @@ def tryout(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "text": text,
         "example": example,
+        "own": OwnEntities.of_pair(world, example) if example else None,
         "chosen": chosen,
         "choices": choices,
         "paper_texts": [probe.text for probe in PAPER_PROBES],
@@ -87,7 +89,12 @@ def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
             request_answers(row)  # the job may have ended before it saw the text
     else:
         row = ask(world, request.user, text, runs) if text and runs else None
-    context = {"tryout": row, "answers": _answers_of(row, world) if row else [], "text": text}
+    context = {
+        "tryout": row,
+        "answers": _answers_of(row, world) if row else [],
+        "text": text,
+        "own": OwnEntities.in_text(world, row.text) if row else None,
+    }
     response = render(request, "parser_service/results/_tryout_answers.html", context)
     if "waiting" in request.GET:
         return response

@@ -20,6 +20,7 @@ from annotations.language.texts import Refusal
 from annotations.models import Duty, Example, World
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.showing.listing import Listing, Sort, render_list
+from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from parser_service.models import Prediction, TrainingRun
 from parser_service.parsers.registry import title_of
@@ -167,6 +168,7 @@ def _context_of(
     here = str(example.pk)
     return {
         "case": case,
+        "own": OwnEntities.of_pair(request.world, example),
         "runs": runs,
         "answers": [
             (each, listing.url(listing.runs_without(each.run), example=here))

@@ -6,7 +6,7 @@ import pytest
 
 from annotations.labelling.collecting import collect
 from annotations.labelling.label_answers import label
-from annotations.models import Entity, Label, Utterance, Verdict
+from annotations.models import Entity, JobKind, Label, Proposal, Utterance, Verdict
 from annotations.web.corpus.utterance_pages import SORTS
 
 FIND = '( find ( lambda $1 e ( is_a $1 " <object> " ) ) )'
@@ -28,7 +28,7 @@ def test_the_page_shows_the_next_utterance_with_its_candidates(said, anna):
     assert answer.context["row"] == said[0]
     assert answer.context["candidates"][0].form == FIND
     assert answer.context["candidates"][0].sources == ("grammar", "nearest utterance")
-    assert "find the object" in answer.content.decode()
+    assert "find the tea" in answer.content.decode()
 
 
 def test_the_filters_of_the_url_hold(said, anna):
@@ -132,3 +132,28 @@ def test_words_after_a_letter_that_folds_to_two_become_an_alias(
 def test_every_order_of_the_list_is_one_of_its_columns(said, anna):
     for name in SORTS:
         assert anna.get(f"/w/home/utterances/?sort={name}").status_code == 200
+
+
+def waits(anna, row):
+    return anna.get(f"/w/home/label/item/?utterance={row.pk}&waiting")
+
+
+def test_the_page_says_that_a_parser_is_asked_until_its_candidates_have_come(said, sample, anna):
+    assert anna.get("/w/home/label/").context["awaited"] == "Nearest neighbour"
+    assert waits(anna, said[0]).status_code == 204
+    Proposal.objects.create(
+        utterance=said[0], source="knn", run=sample.run.pk, rank=1, form=FIND, score=0
+    )
+    assert waits(anna, said[0]).context["has_come"] is True
+    assert anna.get("/w/home/label/").context["awaited"] == ""
+
+
+def test_nothing_is_promised_once_the_job_has_ended(said, sample, anna):
+    sample.world.jobs.filter(kind=JobKind.PROPOSE).update(status="failed")
+    assert anna.get("/w/home/label/").context["awaited"] == ""
+    assert waits(anna, said[0]).context["has_come"] is False
+
+
+def test_nothing_is_promised_without_a_parser(said, sample, anna):
+    sample.world.runs.update(status="failed")
+    assert anna.get("/w/home/label/").context["awaited"] == ""
