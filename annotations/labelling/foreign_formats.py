@@ -6,15 +6,23 @@ What has no utterances that can be told apart is refused by its name.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from annotations.language.texts import LanguageError, Position
 
-# Line and utterance.
-Said = tuple[int, str]
+
+class Said(NamedTuple):
+    """An utterance, the line where it begins, and its logical form where the file has one."""
+
+    line: int
+    text: str
+    form: str = ""
+
+
+FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 MOST_SAMPLED = 400  # lines by which a format is recognised
 MOST_LEVELS = 8  # of JSON that are looked into
 
@@ -30,6 +38,8 @@ _BIO = re.compile(r"O|[BIESLU]-\S+")
 _UTTERANCE_ID = re.compile(r"(?=\S*\d)(?=\S*[_-])[\w.-]+")
 _RECORDING = re.compile(r"\s\S*(?:/|\.(?:wav|flac|mp3|sph)\b)")
 _BRAT = re.compile(r"(?:T\d+\t\S+ \d+ \d+(?:;\d+ \d+)*\t|[REAMN]\d+\t|#\d+\t|\*\t)")
+_BRAT_SPAN = re.compile(r"(T\d+)\t\S+ (\d{1,9}) (\d{1,9})\t")
+_BRAT_NOTE = re.compile(r"#\d+\tAnnotatorNotes (T\d+)\t(.*)")
 _YAML_KEY = re.compile(r"\s*(?:- )?[\w.-]+:(?:\s|$)")
 
 
@@ -43,7 +53,7 @@ def take_utterances(text: str, source: str) -> list[Said] | None:
     sample = [line for line in lines[:MOST_SAMPLED] if line.strip()]
     for kind, (is_of, take, hint) in _KINDS.items():
         if is_of(sample):
-            said = [(line, told) for line, told in take(lines) if told.strip()]
+            said = [each for each in take(lines) if each.text.strip()]
             if not said:
                 raise LanguageError(f"this is {kind}, without utterances", Position(source), hint)
             return said
@@ -64,6 +74,46 @@ def join_fragments(value: Any) -> list[str]:
                 below.extend(item.values() if isinstance(item, dict) else item)
         inside = below
     return found
+
+
+def form_of_task(item: Any) -> str:
+    """Return the logical form that the last annotation of a task of Label Studio has; empty without one."""
+    annotations = item.get("annotations") if isinstance(item, dict) else None
+    for annotation in reversed(annotations if isinstance(annotations, list) else []):
+        if isinstance(annotation, dict) and not annotation.get("was_cancelled"):
+            results = annotation.get("result")
+            for result in results if isinstance(results, list) else []:
+                match result:
+                    case {"from_name": str(name), "value": {"text": [str(form), *_]}}:
+                        if name in FORM_NAMES:
+                            return form
+            return ""
+    return ""
+
+
+def join_brat(files: Mapping[str, str]) -> list[Said]:
+    """Return the lines of the texts of a brat collection, path → content; forms are notes of what spans a line."""
+    said: list[Said] = []
+    for path, standoff in sorted(files.items()):
+        text = files.get(f"{path.removesuffix('.ann')}.txt") if path.endswith(".ann") else None
+        if text is not None:
+            forms = _forms_by_span(standoff)
+            at = 0
+            for number, line in enumerate(text.split("\n"), start=1):
+                said.append(Said(number, line, forms.get((at, at + len(line)), "")))
+                at += len(line) + 1
+    return said
+
+
+def _forms_by_span(standoff: str) -> dict[tuple[int, int], str]:
+    spans: dict[str, tuple[int, int]] = {}
+    notes: list[tuple[str, str]] = []
+    for line in standoff.split("\n"):
+        if found := _BRAT_SPAN.match(line):
+            spans[found[1]] = int(found[2]), int(found[3])
+        elif found := _BRAT_NOTE.match(line):
+            notes.append((found[1], found[2]))
+    return {spans[about]: note for about, note in notes if about in spans}
 
 
 def _is_fragment(value: Any) -> bool:
@@ -87,6 +137,8 @@ def _is_subtitles(sample: Sequence[str]) -> bool:
 
 
 def _is_conll(sample: Sequence[str]) -> bool:
+    if sample and sample[0].startswith("# global.columns ="):  # CoNLL-U Plus
+        return True
     rows = [line.split("\t") for line in sample if line[:1] != "#"]
     if rows and all(len(row) == 10 and row[0][:1].isdigit() for row in rows):
         return True
@@ -128,7 +180,7 @@ def _of_yaml(marks: re.Pattern[str], lines: Sequence[str]) -> Iterator[Said]:
         item = re.match(r"\s*-\s+(.*)", line)
         if waits and line.strip():  # the text below "- text: |"
             waits = False
-            yield number, _plain(line, marks)
+            yield Said(number, _plain(line, marks))
         elif key and key[1] in ("intent", "synonym", "regex", "lookup"):
             is_intent, within = key[1] == "intent", -1
         elif key and key[1] in ("examples", "utterances"):
@@ -136,9 +188,9 @@ def _of_yaml(marks: re.Pattern[str], lines: Sequence[str]) -> Iterator[Said]:
         elif within >= 0 and key and key[1] == "text":
             waits = key[2].strip() in ("|", ">", "|-", ">-")
             if is_intent and not waits:
-                yield number, _plain(key[2], marks)
+                yield Said(number, _plain(key[2], marks))
         elif within >= 0 and item and is_intent and not key:
-            yield number, _plain(item[1], marks)
+            yield Said(number, _plain(item[1], marks))
         elif line.strip() and not item and indent <= within:
             within = -1
 
@@ -149,7 +201,7 @@ def _of_markdown(lines: Sequence[str]) -> Iterator[Said]:
         if line.lstrip().startswith("#"):
             is_intent = bool(_INTENT.match(line))
         elif is_intent and (item := re.match(r"\s*[-*+]\s+(.*)", line)):
-            yield number, _plain(item[1].partition("<!--")[0], _OF_RASA)
+            yield Said(number, _plain(item[1].partition("<!--")[0], _OF_RASA))
 
 
 def _plain(text: str, marks: re.Pattern[str]) -> str:
@@ -167,15 +219,16 @@ def _of_subtitles(lines: Sequence[str]) -> Iterator[Said]:
         elif begins and line.strip():
             said.append(_TAG.sub("", line).strip().removeprefix("- "))
         elif begins:
-            yield begins, " ".join(said)
+            yield Said(begins, " ".join(said))
             begins = 0
 
 
 def _of_conll(lines: Sequence[str]) -> Iterator[Said]:
-    begins, words, whole = 0, list[str](), ""
+    begins, words, whole, form = 0, list[str](), "", ""
     for number, line in enumerate([*lines, ""], start=1):
         if line.startswith(("#", "-DOCSTART-")):
             whole = line.partition("# text = ")[2] or whole
+            form = line.partition("# logical_form = ")[2] or form
         elif line.strip():
             cells = line.split("\t") if "\t" in line else line.split()
             is_numbered = len(cells) > 2 and cells[0].replace("-", "").replace(".", "").isdigit()
@@ -183,8 +236,8 @@ def _of_conll(lines: Sequence[str]) -> Iterator[Said]:
             if cells[0].isdigit() or not is_numbered:  # else a range such as 3-4, or an empty node
                 words.append(cells[1] if is_numbered else cells[0])
         elif begins:
-            yield begins, whole or " ".join(words)
-            begins, words, whole = 0, [], ""
+            yield Said(begins, whole or " ".join(words), form)
+            begins, words, whole, form = 0, [], "", ""
 
 
 def _of_kaldi(lines: Sequence[str]) -> Iterator[Said]:
@@ -196,7 +249,7 @@ def _of_kaldi(lines: Sequence[str]) -> Iterator[Said]:
     )
     if is_list or any(_RECORDING.search(line) for line in lines[:MOST_SAMPLED]):
         return
-    yield from ((number, each[0]) for number, each in enumerate(told, start=1) if each)
+    yield from (Said(number, each[0]) for number, each in enumerate(told, start=1) if each)
 
 
 def _nothing(lines: Sequence[str]) -> Iterator[Said]:
@@ -216,7 +269,7 @@ _KINDS: dict[
     "training data of Rasa (Markdown)": (_is_rasa_markdown, _of_markdown, _RASA_HINT),
     "a file of subtitles (SubRip or WebVTT)": (_is_subtitles, _of_subtitles, "send the transcript"),
     "a CoNLL file": (_is_conll, _of_conll, "send its sentences as plain text"),
-    "a brat file of annotations": (_is_brat, _nothing, "send the .txt file beside it"),
+    "a brat file of annotations": (_is_brat, _nothing, "pack it with the .txt file beside it"),
     "a TextGrid of Praat": (_is_text_grid, _nothing, "export its intervals as a table"),
     "a list of Kaldi": (_is_kaldi, _of_kaldi, "send the file text, which has the transcripts"),
     "YAML": (_is_yaml, _nothing, "send the texts as plain text, one a line, or as CSV"),

@@ -1,4 +1,4 @@
-"""Verb: export utterances with their labels, row by row: JSON Lines, CSV, Parquet."""
+"""Verb: export utterances with their labels, row by row: as tables, and as other programs take them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from django.db.models import Prefetch, QuerySet
 
 from annotations.exchange.tables import TableFormat, table_pieces
+from annotations.labelling.label_formats import LABEL_FILES
 from annotations.models import Label, Utterance, World
 
 CHUNK = 1_000  # rows fetched at once
@@ -24,10 +25,13 @@ TYPES = {"id": "int64", "version": "int64", "seconds": "double"}
 def export_labels(world: World, rows: QuerySet[Utterance], as_: str) -> Iterator[bytes]:
     """Return the utterances ``rows`` of ``world`` as a file in pieces, none of them large.
 
-    ``as_`` is a ``TableFormat``. ``labels`` are the answers that were accepted and not taken back, the one
-    that decides last: what waits to be compared with another person's answer is in no export. In tables
-    ``spans`` and ``labels`` are JSON.
+    ``as_`` is a ``TableFormat`` or a ``LabelFormat``. ``labels`` are the answers that were accepted and not taken
+    back, the one that decides last: what waits to be compared with another person's answer is in no export.
+    In tables ``spans`` and ``labels`` are JSON.
     """
+    if as_ in LABEL_FILES:
+        classes = world.entity_classes.values_list("token", flat=True)
+        return LABEL_FILES[as_].write(rows.iterator(chunk_size=CHUNK), list(classes))
     answers = Label.objects.accepted().select_related("annotator").order_by("accepted_at", "id")
     chosen = rows.select_related("created_by", "upload").defer("upload__content")
     with_answers = chosen.prefetch_related(Prefetch("labels", answers, to_attr="answers"))

@@ -20,7 +20,12 @@ from typing import Any, Literal
 
 from charset_normalizer import from_bytes
 
-from annotations.labelling.foreign_formats import join_fragments, take_utterances
+from annotations.labelling.foreign_formats import (
+    FORM_NAMES,
+    form_of_task,
+    join_fragments,
+    take_utterances,
+)
 from annotations.language.texts import (
     ENCODINGS,
     LanguageError,
@@ -92,7 +97,6 @@ _USUAL_NAMES = (
     "class",
     "split",
 )
-FORM_NAMES = ("logical_form", "form", "parse", "lambda", "semantics")
 _BETWEEN_WORDS = re.compile(r"[.\s_-]")
 _CROWD_HEAD = re.compile(r"[^\n]*\bAnswer\.(?:utterance|custom)\d", re.IGNORECASE)
 # What sentences do not have: brackets, markup, identifiers and paths.
@@ -239,8 +243,10 @@ def read_upload(
     if not format:
         _refuse_other_files(text, source)
     if format in ("", UploadFormat.TAKEN) and (said := take_utterances(text, source)):
-        rows = [UploadRow(line, {"text": told}) for line, told in said]
-        warning = "Utterances were taken out of the file; its intents and labels are left out."
+        rows = [UploadRow(each.line, {"text": each.text, "form": each.form}) for each in said]
+        warning = (
+            "Utterances were taken out of the file; its intents and marks of entities are left out."
+        )
         return replace(_sheet(UploadFormat.TAKEN, rows), warnings=(warning,))
     chosen = UploadFormat(format) if format else recognise(text)
     match chosen:
@@ -578,6 +584,8 @@ def _of_items(
             continue
         try:
             values, has_half_text = _flat(item), _has_half_text(item)
+            if form := form_of_task(item):
+                values = {**(values or {}), "logical_form": _storable(form)}
         except RecursionError:  # it was just not too deep for being parsed
             problems.append(error_at(Position(source, line), TOO_DEEP))
             continue

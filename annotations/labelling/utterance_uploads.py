@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import timedelta
@@ -11,7 +12,8 @@ from django.db import transaction
 from django.db.models import Exists, OuterRef
 from django.utils import timezone
 
-from annotations.exchange.source_files import UploadedFile, read_one_file
+from annotations.exchange.archives import is_archive
+from annotations.exchange.source_files import UploadedFile, read_files, read_one_file
 from annotations.labelling.collecting import (
     MOST_AT_ONCE,
     CollectedTexts,
@@ -19,6 +21,7 @@ from annotations.labelling.collecting import (
     find_known,
     read_text,
 )
+from annotations.labelling.foreign_formats import join_brat
 from annotations.labelling.form_check import canonical_label
 from annotations.labelling.upload_reading import (
     FORMAT_NAMES,
@@ -120,8 +123,24 @@ class Preview:
 
 
 def content_of(file: UploadedFile) -> bytes:
-    """Return the content of a file that was sent, or of the only one in an archive. Raises LanguageError."""
+    """Return the content of a file that was sent, or of the only one in an archive.
+
+    A brat collection in an archive becomes JSON Lines. Raises LanguageError.
+    """
+    if is_archive(file):
+        files = read_files([file], _is_of_brat, MOST_BYTES).files
+        if any(path.endswith(".ann") for path in files):
+            texts = {
+                path: decode_upload(data, path)[0] if data.strip() else ""
+                for path, data in files.items()
+            }
+            rows = [{"text": each.text, "form": each.form} for each in join_brat(texts)]
+            return "\n".join(json.dumps(row) for row in rows if row["text"]).encode()
     return read_one_file(file, bool, MOST_BYTES)
+
+
+def _is_of_brat(path: str) -> bool:
+    return path.endswith((".ann", ".txt"))
 
 
 def preview(

@@ -18,6 +18,7 @@ from annotations.labelling.collecting import MOST_AT_ONCE, collect
 from annotations.labelling.entity_spans import mend_span
 from annotations.labelling.item_answers import answer
 from annotations.labelling.label_export import FIELDS, export_labels
+from annotations.labelling.label_formats import LABEL_FILES, LabelFormat
 from annotations.labelling.upload_reading import UploadFormat as UploadFormat
 from annotations.labelling.utterance_deletion import delete_utterance
 from annotations.labelling.utterance_uploads import structure_of
@@ -105,7 +106,8 @@ class LabelExportQuery(serializers.Serializer[Any]):
 
     def get_fields(self) -> dict[str, Any]:
         # "as" is a word of Python and cannot be a class attribute.
-        return {"as": serializers.ChoiceField(choices=[*TableFormat], default=TableFormat.JSONL)}
+        formats = [*TableFormat, *LabelFormat]
+        return {"as": serializers.ChoiceField(choices=formats, default=TableFormat.JSONL)}
 
 
 class UtteranceViewSet(RowsViewSet):
@@ -157,13 +159,16 @@ class UtteranceViewSet(RowsViewSet):
         responses={
             (200, "application/jsonl"): ExportedUtteranceSerializer(many=True),
             (200, "text/csv"): OpenApiTypes.STR,
+            (200, "text/plain"): OpenApiTypes.STR,
+            (200, "application/json"): OpenApiTypes.OBJECT,
             (200, "application/vnd.apache.parquet"): OpenApiTypes.BINARY,
+            (200, "application/zip"): OpenApiTypes.BINARY,
         },
     )
     @may_take_long
     @action(detail=False, pagination_class=None, content_negotiation_class=AnyType)
     def export(self, request: ApiRequest, **kwargs: object) -> StreamingHttpResponse:
-        """Streams the utterances that the filters leave with their labels, as JSON Lines, CSV or Parquet.
+        """Streams the utterances that the filters leave with their labels, as a table or as another program takes them.
 
         Answers that wait to be compared with another person's are in no export.
         """
@@ -171,7 +176,8 @@ class UtteranceViewSet(RowsViewSet):
         query.is_valid(raise_exception=True)
         as_ = query.validated_data["as"]
         pieces = export_labels(self.world, self.filter_queryset(self.get_queryset()), as_)
-        return attachment(pieces, as_, f"{self.world.name}-utterances.{as_}")
+        suffix = LABEL_FILES[as_].suffix if as_ in LABEL_FILES else as_
+        return attachment(pieces, suffix, f"{self.world.name}-utterances.{suffix}")
 
     def destroy(self, request: ApiRequest, **kwargs: object) -> Response:
         """Deletes an utterance, which keeps its answers: ``history/utterance/ID/`` restores it with them."""
