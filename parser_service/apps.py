@@ -23,6 +23,7 @@ class ParserServiceConfig(WorkbenchApp):
         "propose": "parser_service.labelling.parser_proposals.propose",
         "analyse": "parser_service.reviews.analysis_job.analyse",
         "answer": "parser_service.reviews.tryout_answers.answer",
+        "train": "parser_service.runs.training_today.train_of",
         "measure": "parser_service.results.measuring_job.measure",
         "parse": "parser_service.serving.batch_job.parse_batch",
         "paraphrase": "parser_service.labelling.model_contributor.paraphrase_of",

@@ -63,6 +63,7 @@ urlpatterns = [
     path("runs/", run_pages.runs, name="runs"),
     path("runs/table/", run_pages.runs_table, name="runs_table"),
     path("runs/new/", new_run_pages.run_new, name="run_new"),
+    path("runs/today/", new_run_pages.run_today, name="run_today"),
     path("runs/<int:pk>/", run_pages.run, name="run"),
     path("runs/<int:pk>/state/", run_pages.run_state, name="run_state"),
     path("runs/<int:pk>/charts/", run_pages.run_charts, name="run_charts"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
 from typing import Any, Self
 
 from django.core.exceptions import ValidationError
@@ -74,6 +75,12 @@ def require_free(world: World, name: str) -> None:
     """Raise LanguageError where ``world`` has a split called ``name``."""
     if world.splits.filter(name=name).exists():
         raise LanguageError(f"there is a split {name} already", hint="choose another name")
+
+
+def free_name(world: World) -> str:
+    """Return a name that no split of ``world`` has: that of the world and a number."""
+    taken = set(world.splits.values_list("name", flat=True))
+    return next(name for n in count(len(taken) + 1) if (name := f"{world.name}-{n}") not in taken)
 
 
 def report_of(frozen: Split) -> dict[str, Any]:

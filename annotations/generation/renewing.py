@@ -37,6 +37,10 @@ KINDS_OF_CHANGE = ("added", "removed", "relabelled", "moved")
 Said = tuple[bool, str]
 
 
+class Unchanged(LanguageError):
+    """Freezing a split anew would give the same split."""
+
+
 @dataclass(frozen=True, slots=True)
 class RelabelledExample:
     """An utterance with its label in the split and that of today."""
@@ -75,14 +79,14 @@ class SplitChanges:
 def freeze_anew(old: Split, by: User | None = None, progress: Progress = UNWATCHED) -> Split:
     """Freeze the corpus of today with the criterion, shares and seed of ``old``, which stays as it is.
 
-    Raises LanguageError where nothing has changed since, or ``old`` was frozen anew already.
+    Raises Unchanged where nothing has changed since, and LanguageError where ``old`` was frozen anew already.
     """
     require_last(old)
     progress.report(0, "parting the pairs")
     examples = plan_anew(old)
     progress.report(0.4, "comparing them with those of the split")
     if changes_between(old, examples).is_none:
-        raise LanguageError(f"nothing has changed since {old} was frozen")
+        raise Unchanged(f"nothing has changed since {old} was frozen")
     progress.report(0.6, "writing the split")
     prepared = PreparedSplit(
         name_after(old),

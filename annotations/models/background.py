@@ -157,6 +157,7 @@ class JobKind(models.TextChoices):
     LOAD_WORLD = "load_world", "Loading of a world"
     GENERATE = "generate", "Generation of commands"
     FREEZE = "freeze", "Freezing of a split"
+    TRAIN = "train", "Training on the world of today"
     LAUNCH = "launch", "Launch of a campaign"
     PROPOSE = "propose", "Forms proposed by a parser"
     AUDIT = "audit", "Label audit"

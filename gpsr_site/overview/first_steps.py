@@ -10,6 +10,7 @@ from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
 from annotations.models import Duty, Entity, Production, Submission, TaskCategory, World
 from annotations.rows.composition import split_entry
 from gpsr_site.overview.counts import Counts
+from parser_service.parsers.conditions import PARAPHRASED, written_sources
 
 WHO = {
     Duty.VIEW: "",
@@ -105,15 +106,18 @@ def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[First
         is_done=bool(counts.commands),
         sends="generate",
     )
-    freeze = FirstStep(
-        "Freeze a split into parts to train, validate and test on.",
-        *("Freeze a split", "split_new", annotate),
-        is_done=bool(counts.splits),
-    )
     train = FirstStep(
         "Train what is recommended here, for what people say in other words.",
-        *("Start a run", "run_new", manage),
+        *("Train it", "run_today", manage),
         is_done=bool(counts.runs),
+        sends="train",
+    )
+    again = replace(
+        train,
+        sentence="Train it once more, with what people wrote.",
+        label="Train it again",
+        is_done=world.runs.filter(train_sources__contains=written_sources({PARAPHRASED})).exists(),
+        is_optional=True,
     )
     wrong = FirstStep(
         *("Read its wrong answers.", "Watch the runs", "runs", view), is_done=bool(counts.evaluated)
@@ -153,14 +157,15 @@ def _steps(world: World, counts: Counts, beginning: Beginning) -> Iterable[First
         sentence="Or write it by hand: what the robot knows, then a grammar, then templates.",
         is_optional=True,
     )
-    to_the_end = (ask, freeze, train, wrong, robot, people)
+    asked = (ask, again) if counts.paraphrases and counts.runs else (ask,)
+    to_the_end = (*asked, train, wrong, robot, people)
     match beginning:
         case Beginning.EMPTY:
             return (examples, files, by_hand, attempt, people)
         case Beginning.COMPETITION:
-            return (*_of_competition(world), generate, attempt, train, ask, robot, people)
+            return (*_of_competition(world), generate, attempt, train, *asked, robot, people)
         case Beginning.STARTER:
-            return (attempt, generate, train, wrong, ask, robot, people)
+            return (attempt, generate, train, wrong, *asked, robot, people)
         case Beginning.WRITTEN:
             return (named, grammar, written, generate, attempt, *to_the_end)
         case Beginning.FILES:

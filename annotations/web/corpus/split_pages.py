@@ -8,6 +8,7 @@ from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 
+from annotations.generation.freezing import free_name
 from annotations.generation.freezing_job import start_freezing, start_preview, start_renewal
 from annotations.generation.renewing import changes_since, is_from_import, last_of
 from annotations.generation.split_statistics import figures_of, near_duplicates_of
@@ -51,7 +52,7 @@ def splits(request: WorldRequest, world: World) -> HttpResponse:
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="freeze a split")
 def split_new(request: WorldRequest, world: World) -> HttpResponse:
     """Show the form that freezes a split; its other button only previews the counts."""
-    initial = {"name": f"{world.name}-{world.splits.count() + 1}"}
+    initial = {"name": free_name(world)}
     form = SplitForm(posted(request), initial=initial)
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():

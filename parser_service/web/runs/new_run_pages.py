@@ -16,9 +16,10 @@ from django.views.decorators.cache import never_cache
 
 from annotations.language.corpus import KNOWN
 from annotations.language.texts import Refusal
-from annotations.models import Duty, Split, World
+from annotations.models import Duty, Job, Split, World
 from annotations.models.background import Status
 from annotations.people.access import READ_AND_WRITE, WRITE, WorldRequest, world_view
+from annotations.people.allowances import may_take_long
 from annotations.showing.paging import number_in
 from annotations.web.forms import posted
 from parser_service.models import Evaluation, TrainingRun
@@ -37,6 +38,7 @@ from parser_service.runs.recommended import (
 )
 from parser_service.runs.retraining import retrainable
 from parser_service.runs.starting import start_again, start_runs
+from parser_service.runs.training_today import start_today
 from parser_service.web.runs.run_forms import GENERAL, PREFIX, RunForm
 
 MOST_RUNS = 200  # the newest that times are taken from
@@ -126,6 +128,22 @@ def run_retrain(request: WorldRequest, world: World, pk: int) -> HttpResponse:
     if told := in_words([answer]):
         messages.info(request, told)
     return redirect("run", world=world.name, pk=answer[0].pk)
+
+
+@may_take_long
+@world_view(Duty.MANAGE, WRITE, does="train on the world of today")
+def run_today(request: WorldRequest, world: World) -> HttpResponse:
+    """Freeze the world of today, and train on it what answers here, or what is recommended."""
+    try:
+        started = start_today(world, request.user)
+    except Refusal as error:
+        messages.error(request, error.message)
+        return redirect("run_new", world=world.name)
+    if isinstance(started, Job):
+        return redirect("job", pk=started.pk)
+    if told := in_words([started]):
+        messages.info(request, told)
+    return redirect("run", world=world.name, pk=started[0].pk)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,8 @@ from rest_framework.decorators import action
 from rest_framework.response import Response
 
 from annotations.language.texts import Refusal
-from annotations.models import Duty, Scope
+from annotations.models import Duty, Job, Scope
+from annotations.people.allowances import may_take_long
 from annotations.web.rest.fields import Fields, FiniteField
 from annotations.web.rest.idempotency import once
 from annotations.web.rest.permissions import ApiRequest
@@ -29,6 +30,7 @@ from parser_service.runs.analysis_requests import request_analysis
 from parser_service.runs.learning_curve import MOST_SEEDS as MOST_CURVE_SEEDS
 from parser_service.runs.run_requests import LARGEST_SEED, LEAST_SHARE, MOST_SEEDS
 from parser_service.runs.starting import start_again, start_learning_curve, start_runs
+from parser_service.runs.training_today import start_today
 from parser_service.web.runs.run_filters import RunFilters
 from parser_service.web.runs.run_forms import PREFIX, RunForm
 
@@ -83,7 +85,7 @@ class CurveSeeds(Fields):
     seeds = serializers.IntegerField(min_value=1, max_value=MOST_CURVE_SEEDS, default=1)
 
 
-TRAINING = ("create", "cancel", "retrain", "learning_curve")
+TRAINING = ("create", "today", "cancel", "retrain", "learning_curve")
 
 
 class RunViewSet(RowsViewSet):
@@ -130,6 +132,21 @@ class RunViewSet(RowsViewSet):
         if not form.is_valid():
             raise refusal_of_run(form)
         return self.answer_started(start_runs(self.world, request.user, **form.asked))
+
+    @extend_schema(
+        request=None,
+        responses={201: StartedRunsSerializer, 200: StartedRunsSerializer, 202: JobSerializer},
+    )
+    @may_take_long
+    @action(detail=False, methods=["post"])
+    @once
+    def today(self, request: ApiRequest, **kwargs: object) -> Response:
+        """Freezes the world of today where that is to be done, and trains on it what answers here or is recommended.
+        Where that takes long, the answer is a job (202), whose report names the run."""
+        started = start_today(self.world, request.user)
+        if isinstance(started, Job):
+            return accepted(request, started)
+        return self.answer_started([started])
 
     @extend_schema(request=None, responses={200: RunSerializer})
     @action(detail=True, methods=["post"])

@@ -133,6 +133,7 @@ NAMELESS = {
         "run-learning-curve",
         "paraphrase-runs",
         "run-retrain",
+        "run-today",
         "run-analysis",
         "results-measure",
         "run-cancel",

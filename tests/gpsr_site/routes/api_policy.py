@@ -297,6 +297,7 @@ API_POLICY = [
     Rule("api:paraphrase-runs", *admins(NO_JSON), method="post"),
     Rule("api:run-analysis", *reviewers(202), method="post"),
     Rule("api:run-cancel", *admins(CLASH), method="post"),  # it has ended
+    Rule("api:run-today", *admins(201), method="post"),
     Rule("api:run-retrain", *admins(400), method="post"),  # there is no newer split
     *(
         Rule(f"api:{name}", *annotators(NO_VERSION), method=method)

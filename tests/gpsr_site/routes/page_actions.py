@@ -150,6 +150,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "split_new": "post split-list",
     "split_renew": "post split-renew",
     "run_new": "post run-list",
+    "run_today": "post run-today",
     "run_cancel": "post run-cancel",
     "run_retrain": "post run-retrain",
     "learning_curve_start": "post run-learning-curve",

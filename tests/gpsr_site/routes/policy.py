@@ -336,6 +336,7 @@ POLICY = [
     Rule("contributor_forget", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_new", *ADMINS),
     Rule("run_new", *ADMINS, method="post"),
+    Rule("run_today", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_cancel", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("run_retrain", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
     Rule("learning_curve_start", LOG_IN, NOWHERE, NO, NO, GONE_ON, method="post"),
