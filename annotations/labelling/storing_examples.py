@@ -22,14 +22,15 @@ from annotations.language.forms import (
     canonical_text,
     read_form,
 )
-from annotations.language.grammar import CHECK_STEPS, Budget
+from annotations.language.grammar import CHECK_STEPS, Budget, Production, read_production
 from annotations.language.grounding import Anonymizer
 from annotations.language.induction import (
     CATEGORY,
+    Edit,
     Example,
     KnownWorld,
     Proposal,
-    category_of,
+    categories_with,
     clauses_of,
     names_all,
     new_classes,
@@ -39,7 +40,7 @@ from annotations.language.induction import (
     propose,
     text_of,
 )
-from annotations.language.templates import TemplateChart
+from annotations.language.templates import SemanticTemplate, TemplateChart
 from annotations.language.texts import LanguageError, Position, Problem, Refusal, error_at
 from annotations.language.world import Predicate
 from annotations.models import Duty, Editable, User, World
@@ -66,7 +67,8 @@ class NoExamples(Refusal):
 
 @dataclass(frozen=True, slots=True)
 class StoredExamples:
-    """How many rows were added; ``changed`` are predicates that take other arguments as well now."""
+    """How many rows were added; ``changed`` are predicates that take other arguments as well now, ``lengthened``
+    productions and templates that say more."""
 
     classes: int = 0
     entities: int = 0
@@ -75,6 +77,7 @@ class StoredExamples:
     productions: int = 0
     templates: int = 0
     utterances: int = 0
+    lengthened: int = 0
 
 
 def store_examples(
@@ -96,7 +99,7 @@ def store_examples(
         held = World.objects.hold().get(pk=world.pk)
         if made_before(by, once):
             return None
-        known = known_world_of(held)
+        known = known_world_of(held, category)
         proposal = propose(text, known)
         if problems := tuple(problems_of(proposal, held)):
             raise NoExamples(problems)
@@ -106,7 +109,9 @@ def store_examples(
             for each in new_predicates(proposal, known)
             for row in held.predicates.filter(name=each.name)
         ]
-        change_many(held, changed, by)
+        edits = [edit for change in proposal.changes for edit in change.edits]
+        lengthened = [_lengthened(held, each) for each in edits if each.was is not None]
+        change_many(held, [*changed, *lengthened], by)
         groups = _unsaved(held, proposal, known, category)
         try:
             add_all(groups, by)
@@ -116,6 +121,7 @@ def store_examples(
         return StoredExamples(
             *(classes, entities, predicates, len(changed), productions, templates),
             utterances=_keep_lines(held, proposal, known, by),
+            lengthened=len(lengthened),
         )
 
 
@@ -182,16 +188,25 @@ def _commands(
     category: models.TaskCategory, proposal: Proposal
 ) -> tuple[list[models.Production], list[models.SemanticTemplate]]:
     """Return the unsaved productions and templates of a task category."""
-    source = split_entry(category.rule_sources[-1])[0]
+    own = split_entry(category.rule_sources[-1])[0]
+    rows = models.Production.objects.filter(grammar=category.grammar_id)
+    category_of_source = dict(rows.values_list("source", "task_category"))
+    lines = [(own, category.name, *each) for each in new_productions(proposal)]
+    for change in proposal.changes:
+        for edit in change.edits:
+            if edit.was is None:
+                of_source = category_of_source.get(edit.source, "")
+                added = edit.stored
+                lines.append((edit.source, of_source, added["nonterminal"], added["expansion"]))
     productions = [
         models.Production(
             grammar=category.grammar,
             source=source,
-            task_category=category.name,
+            task_category=of_category,
             nonterminal=nonterminal,
             expansion=expansion,
         )
-        for nonterminal, expansion in new_productions(proposal)
+        for source, of_category, nonterminal, expansion in lines
     ]
     templates = [
         models.SemanticTemplate.for_category(
@@ -202,13 +217,31 @@ def _commands(
     return productions, templates
 
 
+def _lengthened(world: World, edit: Edit) -> tuple[Editable, dict[str, str]]:
+    """Return the row of a stored line and the fields that change. Raises NoExamples where it cannot be told."""
+    if isinstance(edit.was, SemanticTemplate):
+        templates = models.SemanticTemplate.objects.filter(grammar__world=world)
+        pattern, form = edit.was.texts
+        if row := templates.filter(source=edit.source, pattern=pattern, form=form).first():
+            return row, edit.stored
+    for production in models.Production.objects.filter(grammar__world=world, source=edit.source):
+        line = f"${production.nonterminal} = {production.expansion}"
+        if isinstance(edit.was, Production) and read_production(line) == edit.was:
+            return production, edit.stored
+    message = f"“{edit.before}” cannot be made longer"
+    raise NoExamples(
+        [error_at(Position(line=1), message, "refuse the change, or change it by hand")]
+    )
+
+
 def _signatures(predicate: Predicate) -> list[list[str]]:
     return [list(map(str, each.arguments)) for each in predicate.signatures]
 
 
 def _keep_lines(world: World, proposal: Proposal, known: KnownWorld, by: User) -> int:
     """Store the lines as utterances, with their forms where ``by`` may say what they mean; return how many are new."""
-    charts = [TemplateChart([category_of(proposal)]), *([known.chart] if known.chart else ())]
+    charts = [TemplateChart(categories_with(proposal, known))]
+    charts += [known.chart] if known.chart else []
     anonymizer, forms = anonymizer_of(world), {}
     for each in proposal.examples if world.allows(by, Duty.MANAGE) else ():
         if form := _form_of(each, anonymizer, charts):

@@ -16,8 +16,8 @@ from annotations.language.forms import (
     Wildcard,
     with_leaves,
 )
-from annotations.language.induction import KnownWorld, Rule, folded
-from annotations.language.templates import TemplateChart, spread_derivations
+from annotations.language.induction import CATEGORY, KnownWorld, Rule, StoredTemplates, folded
+from annotations.language.templates import spread_derivations
 from annotations.models import Entity, Production, World
 from annotations.rows.from_rows import predicates_of, task_categories
 
@@ -25,8 +25,11 @@ COMMANDS_OF_A_TEMPLATE = 10  # that say which words name a predicate and lead to
 REMEMBERED_WORLDS = 4
 
 
-def known_world_of(world: World) -> KnownWorld:
-    """Return what ``world`` has. Raises LanguageError where a stored text cannot be read."""
+def known_world_of(world: World, category: str = CATEGORY) -> KnownWorld:
+    """Return what ``world`` has; new templates go to a task category, which it may lack.
+
+    Raises LanguageError where a stored text cannot be read.
+    """
     rows = Entity.objects.filter(ontology__world=world).order_by("-position")
     texts = {
         folded(name): token
@@ -35,22 +38,22 @@ def known_world_of(world: World) -> KnownWorld:
     }
     # Another database, such as a restored one, may have another world with the same key and revision.
     now = World.objects.values_list("pk", "created_at", "revision").get(pk=world.pk)
-    rules, chart = _commands(*now)
+    rules, stored = _commands(*now)
     names = Production.objects.filter(grammar__world=world).values_list("nonterminal", flat=True)
-    return KnownWorld(texts, predicates_of(world), rules, frozenset(names), chart)
+    return KnownWorld(texts, predicates_of(world), rules, frozenset(names), stored, category)
 
 
 @lru_cache(maxsize=REMEMBERED_WORLDS)
 def _commands(
     pk: int, created_at: datetime, revision: int
-) -> tuple[tuple[Rule, ...], TemplateChart | None]:
+) -> tuple[tuple[Rule, ...], StoredTemplates | None]:
     categories = task_categories(World.objects.get(pk=pk))
     rules: dict[Rule, None] = {}
     for category in categories:
         for each in spread_derivations(category, COMMANDS_OF_A_TEMPLATE, Random(0)):
             if isinstance(each.form, Application):
                 rules |= dict.fromkeys(_rules(each.symbols, each.form))
-    return tuple(rules), TemplateChart(categories) if categories else None
+    return tuple(rules), StoredTemplates(categories) if categories else None
 
 
 def _rules(symbols: Symbols, form: Form) -> Iterator[Rule]:

@@ -6,7 +6,7 @@ from threading import Lock
 
 from annotations.language.forms import Form, Symbols
 from annotations.language.grounding import Anonymizer
-from annotations.language.induction import category_of, propose, with_proposal
+from annotations.language.induction import categories_with, propose, with_proposal
 from annotations.language.plans import Lookup, StoppingWords, usual_places
 from annotations.models import World
 from annotations.rows.from_rows import ontology_of, recipe_book_of, task_categories
@@ -28,7 +28,9 @@ def answerer_with(world: World, text: str) -> Answerer | None:
     """
     known = known_world_of(world)
     proposal = propose(text, known)
-    categories = (*task_categories(world), category_of(proposal))
+    changed = {each.name: each for each in categories_with(proposal, known)}
+    stored = {each.name: each for each in task_categories(world)}
+    categories = tuple((stored | changed).values())
     if not any(each.templates for each in categories):
         return None
     ontology = with_proposal(ontology_of(world), proposal, known)
@@ -38,7 +40,7 @@ def answerer_with(world: World, text: str) -> Answerer | None:
     lookup = Lookup(ontology, predicates)
 
     def derivations() -> tuple[tuple[Symbols, Form], ...]:
-        return (*learned_use(world).derivations, *derive([category_of(proposal)]))
+        return (*learned_use(world).derivations, *derive(changed.values()))
 
     language = WorldLanguage(
         ontology,

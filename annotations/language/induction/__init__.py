@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from annotations.language.induction.additions import (
-    CATEGORY,
+    categories_with,
     category_of,
     marked,
     new_classes,
@@ -15,6 +15,7 @@ from annotations.language.induction.additions import (
 from annotations.language.induction.analogies import Derived, derive
 from annotations.language.induction.classes import MarkedClass, folded
 from annotations.language.induction.clauses import clauses_of, names_all
+from annotations.language.induction.lengthening import Change, Edit, StoredTemplates, with_changes
 from annotations.language.induction.marked_lines import (
     EXAMPLE,
     MOST_CHARACTERS,
@@ -27,6 +28,7 @@ from annotations.language.induction.marked_lines import (
 )
 from annotations.language.induction.offers import Offer, OfferKind
 from annotations.language.induction.proposal import (
+    CATEGORY,
     Doubt,
     KnownWorld,
     Proposal,

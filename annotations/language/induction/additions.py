@@ -8,19 +8,19 @@ from annotations.language.forms import (
     HUES,
     EntityClass,
     EntityClasses,
-    Text,
     print_sequence,
 )
 from annotations.language.grammar import Grammar, read_production
 from annotations.language.grounding import Anonymizer
 from annotations.language.induction.classes import folded
+from annotations.language.induction.lengthening import with_changes
 from annotations.language.induction.marked_lines import Mark
-from annotations.language.induction.proposal import KnownWorld, Proposal
+from annotations.language.induction.proposal import CATEGORY, KnownWorld, Proposal
+from annotations.language.induction.rules import phrase_symbols
 from annotations.language.templates import TaskCategory, make_template
 from annotations.language.texts import plural
 from annotations.language.world import Entity, Ontology, Predicate
 
-CATEGORY = "commands"  # the task category of commands that people give as examples
 _HUES_APART = (
     137  # degrees: the golden angle, so that the colours of classes that follow each other differ
 )
@@ -29,7 +29,7 @@ _HUES_APART = (
 def new_productions(proposal: Proposal) -> Iterator[tuple[str, str]]:
     """Yield nonterminal and expansion: the words that vary, then each pattern as a command."""
     for each in proposal.synonyms:
-        phrases = (print_sequence(tuple(map(Text, phrase))) for phrase in each.phrases)
+        phrases = (print_sequence(phrase_symbols(phrase)) for phrase in each.phrases)
         yield each.name, " | ".join(phrases)
     for template in proposal.templates:
         yield "Main", template.pattern
@@ -40,6 +40,24 @@ def category_of(proposal: Proposal) -> TaskCategory:
     lines = (f"${name} = {expansion}" for name, expansion in new_productions(proposal))
     templates = (make_template(each.pattern, each.form) for each in proposal.templates)
     return TaskCategory(CATEGORY, Grammar(tuple(map(read_production, lines))), tuple(templates))
+
+
+def categories_with(proposal: Proposal, known: KnownWorld) -> tuple[TaskCategory, ...]:
+    """Return the task categories that are other ones, or new, once a proposal is stored."""
+    stored = known.stored.categories if known.stored else ()
+    changed = [with_changes(each, proposal.changes) for each in stored]
+    names = [each.name for each in stored]
+    if proposal.templates:
+        new = category_of(proposal)
+        if known.category in names:
+            place = names.index(known.category)
+            old = changed[place]
+            productions = (*old.grammar.productions, *new.grammar.productions)
+            templates = (*old.templates, *new.templates)
+            changed[place] = TaskCategory(old.name, Grammar(productions), templates)
+        else:
+            changed.append(TaskCategory(known.category, new.grammar, new.templates))
+    return tuple(each for each in changed if not any(each is old for old in stored))
 
 
 def new_classes(proposal: Proposal, known: EntityClasses) -> tuple[EntityClass, ...]:

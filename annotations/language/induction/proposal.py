@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, islice
 
 from annotations.language.forms import (
     Application,
@@ -23,6 +23,7 @@ from annotations.language.forms import (
     canonical_text,
     head_predicate,
     print_sequence,
+    read_form,
     to_template,
     with_leaves,
 )
@@ -36,6 +37,7 @@ from annotations.language.induction.classes import (
     folded,
 )
 from annotations.language.induction.clauses import clauses_of
+from annotations.language.induction.lengthening import Change, Extension, StoredTemplates, extend
 from annotations.language.induction.marked_lines import (
     Example,
     Mark,
@@ -48,19 +50,24 @@ from annotations.language.induction.offers import Offer, offers_for
 from annotations.language.induction.rules import (
     Rule,
     Words,
+    articles_varied,
     differences,
     is_slot,
+    phrase_symbols,
+    with_tokens,
+    without_articles,
 )
 from annotations.language.induction.synonyms import Synonyms, find_synonyms, with_nonterminals
 from annotations.language.templates import TemplateChart
 from annotations.language.texts import (
-    ARTICLES,
     DETERMINERS,
     MAX_GLOSS,
     Problem,
 )
 from annotations.language.world import Predicate, PredicateKind, signature_of
 
+CATEGORY = "commands"  # the task category of commands that people give as examples
+MOST_ASKED = 3  # predicates of the world that a new one may be
 _ANY = "<>"  # a slot whose class is not known yet
 
 
@@ -69,14 +76,21 @@ class KnownWorld:
     """What a world has already.
 
     ``texts`` are what its entities are called, folded, with their class; ``rules`` some commands of its templates;
-    ``nonterminals`` the names that its grammar has; ``chart`` understands all of its commands.
+    ``nonterminals`` the names that its grammar has; ``stored`` are all of its templates. New templates go to the
+    task category ``category``.
     """
 
     texts: Mapping[str, str] = field(default_factory=dict)
     predicates: Mapping[str, Predicate] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
     nonterminals: frozenset[str] = frozenset()
-    chart: TemplateChart | None = None
+    stored: StoredTemplates | None = None
+    category: str = CATEGORY
+
+    @property
+    def chart(self) -> TemplateChart | None:
+        """What understands all of its commands."""
+        return self.stored.chart if self.stored else None
 
     @cached_property
     def orders(self) -> tuple[ArgumentOrder, ...]:
@@ -111,25 +125,20 @@ class KnownWorld:
                 found.setdefault((head_predicate(rule.form), role), token[1:-1])
         return found
 
-    def understands(self, rule: Rule) -> bool:
-        """Return whether a command of its templates has the words and the form of a rule."""
+    def understands(self, rule: Rule, is_given: bool) -> bool:
+        """Return whether a command of its templates has the words of a rule, and its form.
+
+        Where no form ``is_given``, that of the templates counts, as long as its predicate is that of the rule.
+        """
         if self.chart is None:
             return False
-        bare = _without_articles(rule.words)
-        with_the = (each for word in bare for each in (("the", word) if is_slot(word) else (word,)))
-        means = canonical_text(_with_tokens(rule.form))
+        head, means = head_predicate(rule.form), canonical_text(with_tokens(rule.form))
         return any(
             each.form_text == means
-            for words in (rule.words, bare, with_the)
+            or (not is_given and head_predicate(read_form(each.form_text)) == head)
+            for words in articles_varied(rule.words)
             for each in self.chart.parse(" ".join(words), Budget(CHECK_STEPS))
         )
-
-
-def _with_tokens(form: Form) -> Form:
-    """Return the form with class tokens for its slots, as commands have them."""
-    return with_leaves(
-        form, lambda leaf: Constant(f"<{leaf.name}>") if isinstance(leaf, Wildcard) else leaf
-    )
 
 
 def _roles_in_order(rule: Rule) -> list[str] | None:
@@ -176,7 +185,7 @@ class ProposedTemplate:
                 number += 1
                 yield self._wildcard(word[1:-1], number)
             else:
-                yield Nonterminal(word[1:]) if word.startswith("$") else Text(word)
+                yield from phrase_symbols((word,))
 
     def _wildcard(self, token: str, number: int) -> Wildcard:
         return Wildcard(token, id=number if self.rule.words.count(f"<{token}>") > 1 else None)
@@ -221,6 +230,7 @@ class Proposal:
     tokens: Mapping[Mark, str]
     predicates_of_lines: Mapping[int, tuple[str, ...]]
     understood: tuple[int, ...] = ()
+    changes: tuple[Change, ...] = ()
 
 
 def propose(text: str, known: KnownWorld | None = None) -> Proposal:
@@ -243,18 +253,28 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
     )
     tokens, classes = classes_of(places, known.texts, known.roles)
     lines: dict[Rule, list[int]] = {}
+    given: set[Rule] = set()
     alike: dict[tuple[Words, Form], Rule] = {}
     for each in clauses:
         rule = each.rule(orders[each.action], tokens)
         # With and without an article is one: the oracle passes over them.
-        first = alike.setdefault((_without_articles(rule.words), rule.form), rule)
+        first = alike.setdefault((without_articles(rule.words), rule.form), rule)
         lines.setdefault(first, []).append(each.example.line)
-    new = {rule: where for rule, where in lines.items() if not known.understands(rule)}
+        if each.example.form is not None:
+            given.add(first)
+    new = {
+        rule: where for rule, where in lines.items() if not known.understands(rule, rule in given)
+    }
     not_understood = {line for where in new.values() for line in where}
-    rules, synonyms = find_synonyms(tuple(new))
-    synonyms, rules = _renamed(synonyms, tuple(new), known.nonterminals)
+    apart = said_apart(text)
+    extended = Extension((), tuple(new), new)
+    if known.stored:
+        extended = extend(known.stored, known.category, new, given, apart, known.nonterminals)
+    names = known.nonterminals | {each.name for each in extended.changes}
+    rules, synonyms = find_synonyms(tuple(extended.written))
+    synonyms, rules = _renamed(synonyms, tuple(extended.written), names)
     of_rule: defaultdict[Rule, list[int]] = defaultdict(list)
-    for rule, where in new.items():
+    for rule, where in extended.written.items():
         of_rule[with_nonterminals(rule, synonyms)] += where
     templates = [ProposedTemplate(rule, tuple(sorted(set(of_rule[rule])))) for rule in rules]
     analogies = derive(rules)
@@ -268,7 +288,15 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
     named = {each.example.action for each in clauses} | known.predicates.keys()
     predicates = tuple(
         ProposedPredicate(
-            _predicate(name, [rule for rule in lines if head_predicate(rule.form) == name], known),
+            _predicate(
+                name,
+                [
+                    rule
+                    for rule in (extended.left if name in known.predicates else lines)
+                    if head_predicate(rule.form) == name
+                ],
+                known,
+            ),
             tuple(sorted(set(where))),
             name in named,
         )
@@ -281,8 +309,13 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         predicates,
         synonyms,
         tuple(templates),
-        offers_for(tuple(new), analogies, {each.token: each.marks for each in classes}),
-        tuple(_doubts(predicates, classes, tuple(lines), named, places, tokens, said_apart(text))),
+        offers_for(extended.left, analogies, {each.token: each.marks for each in classes}),
+        (
+            *_doubts(predicates, classes, tuple(lines), named, places, tokens, apart),
+            *_stored_doubts(
+                [each for each in extended.left if each not in given], named, apart, known
+            ),
+        ),
         tokens,
         {line: tuple(dict.fromkeys(names)) for line, names in of_lines.items()},
         tuple(
@@ -291,11 +324,8 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
             if each.line not in not_understood
             and all(folded(mark.text) in known.texts for mark in each.marks)
         ),
+        extended.changes,
     )
-
-
-def _without_articles(words: Words) -> Words:
-    return tuple(word for word in words if word.lower() not in ARTICLES)
 
 
 @dataclass(frozen=True)
@@ -431,6 +461,38 @@ def _doubts(
                 seen.add(frozenset((first, second)))
                 comment = f"# [{member[first]}] is not [{member[second]}]"
                 yield Doubt("class", first, second, comment)
+
+
+def _stored_doubts(
+    rules: Iterable[Rule],
+    named: Iterable[str],
+    apart: Iterable[frozenset[str]],
+    known: KnownWorld,
+) -> Iterator[Doubt]:
+    """Yield what new predicates may be of those that the world has: templates differ from them in the verb alone."""
+    if known.stored is None:
+        return
+    names, seen = set(named), set(apart)
+    budget = Budget(CHECK_STEPS)
+    for rule in rules:
+        new = head_predicate(rule.form)
+        if new in names:
+            continue
+        others = (
+            spot.head
+            for spot in known.stored.spots(rule.words, "", budget)
+            if rule.words[: len(spot.phrase)] == spot.phrase
+            and _role_behind(spot.phrase) == _role_behind(print_sequence(spot.old).split())
+        )
+        for other in islice(dict.fromkeys(others), MOST_ASKED):
+            if frozenset((new, other)) not in seen:
+                seen.add(frozenset((new, other)))
+                yield Doubt("predicate", new, other, f"# {new} is not {other}")
+
+
+def _role_behind(words: Sequence[str]) -> tuple[str, ...]:
+    """Return the role of a slot behind some words."""
+    return read_action((*words, _ANY)).roles
 
 
 def _differ_in_verb(left: Words, right: Words) -> bool:

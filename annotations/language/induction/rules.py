@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import TypeAlias
 
-from annotations.language.forms import Form, Wildcard, with_leaves
+from annotations.language.forms import (
+    Constant,
+    Form,
+    Nonterminal,
+    Text,
+    Wildcard,
+    with_leaves,
+)
 from annotations.language.texts import ARTICLES, BOUNDARIES, LIGHT_WORDS, PRONOUNS
 
 Words: TypeAlias = "tuple[str, ...]"
@@ -42,6 +49,31 @@ class Difference:
 
 def is_slot(word: str) -> bool:
     return word.startswith("<")
+
+
+def phrase_symbols(phrase: Words) -> tuple[Text | Nonterminal, ...]:
+    """Return the symbols of words without slots."""
+    return tuple(Nonterminal(each[1:]) if each.startswith("$") else Text(each) for each in phrase)
+
+
+def without_articles(words: Words) -> Words:
+    return tuple(word for word in words if word.lower() not in ARTICLES)
+
+
+def articles_varied(words: Words) -> tuple[Words, ...]:
+    """Return a command as it is, without articles, and with one before each slot: the oracle passes over them."""
+    bare = without_articles(words)
+    with_the = tuple(
+        each for word in bare for each in (("the", word) if is_slot(word) else (word,))
+    )
+    return words, bare, with_the
+
+
+def with_tokens(form: Form) -> Form:
+    """Return the form with class tokens for its slots, as commands have them."""
+    return with_leaves(
+        form, lambda leaf: Constant(f"<{leaf.name}>") if isinstance(leaf, Wildcard) else leaf
+    )
 
 
 def count_slots(words: Iterable[str]) -> int:

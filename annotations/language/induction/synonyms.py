@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -145,9 +145,15 @@ def _names(groups: Iterable[Iterable[Words]]) -> Iterator[str]:
     """Yield a name for each group of phrases, after the first word that says something."""
     taken: set[str] = set()
     for phrases in groups:
-        words = (word for phrase in phrases for word in phrase if says_something(word))
-        name = re.sub(r"[^a-z]", "", next(words, "").lower()) or "words"
-        if name in taken:
-            name = next(each for n in range(2, 10_000) if (each := f"{name}{n}") not in taken)
+        name = free_name([word for phrase in phrases for word in phrase], taken)
         taken.add(name)
         yield name
+
+
+def free_name(words: Iterable[str], taken: Collection[str]) -> str:
+    """Return a name for a nonterminal, after the first word that says something."""
+    saying = (word for word in words if says_something(word))
+    name = re.sub(r"[^a-z]", "", next(saying, "").lower()) or "words"
+    if name in taken:
+        name = next(each for n in range(2, 100_000) if (each := f"{name}{n}") not in taken)
+    return name

@@ -44,13 +44,27 @@ def by_example(request: WorldRequest, world: World) -> HttpResponse:
                     "utterance": stored.utterances,
                 }
                 said = [say_count(number, noun) for noun, number in counts.items() if number]
-                messages.success(request, f"Added {', '.join(said)}.")
+                longer = say_count(stored.lengthened, "line") if stored.lengthened else ""
+                messages.success(
+                    request,
+                    f"Added {', '.join(said) or 'nothing'}."
+                    + (
+                        f" {longer} of the grammar and the templates say more now."
+                        if longer
+                        else ""
+                    ),
+                )
             return redirect("by_example", world=world.name)
     text = form["lines"].value() or ""
     context = {
         "form": form,
         "has_templates": ready_templates(world).exists(),
-        **proposed(world, text if len(text) <= MOST_TEXT else "", request),
+        **proposed(
+            world,
+            text if len(text) <= MOST_TEXT else "",
+            form["task_category"].value() or "",
+            request,
+        ),
     }
     status = 422 if form.errors else 200
     return render(request, "annotations/description/by_example.html", context, status=status)
@@ -61,20 +75,21 @@ def by_example_preview(request: WorldRequest, world: World) -> HttpResponse:
     """Show what the typed lines propose. A correction rewrites them first; they come back with the proposal."""
     form = ExamplesForm(world, request.POST)
     if form.is_valid():
-        context = proposed(world, form.cleaned_data["lines"], request)
+        sent = form.cleaned_data
+        context = proposed(world, sent["lines"], sent["task_category"], request)
     else:
         context = {"refused": " ".join(map(str, form.errors.get("lines", ())))}
     return render(request, "annotations/description/_proposal.html", context)
 
 
-def proposed(world: World, text: str, request: WorldRequest) -> dict[str, Any]:
+def proposed(world: World, text: str, category: str, request: WorldRequest) -> dict[str, Any]:
     """Return the context of a proposal: ``proposal`` as it is shown, ``problems`` of the lines.
 
     ``rewritten`` are the lines as a correction has rewritten them, ``refused`` why one was not made.
     """
     context: dict[str, Any] = {}
     try:
-        known = known_world_of(world)
+        known = known_world_of(world, category or CATEGORY)
     except LanguageError as error:
         return {"refused": f"The grammar of this world cannot be read: {sentence_of(error)}"}
     proposal = propose(text, known)

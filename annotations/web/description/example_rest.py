@@ -99,21 +99,42 @@ class OpenQuestionSerializer(serializers.Serializer[Any]):
     comment = serializers.CharField()
 
 
+class ProposedEditSerializer(serializers.Serializer[Any]):
+    """A production or a template as it is and as it becomes; ``before`` is empty for a production that is added."""
+
+    kind = serializers.ChoiceField(choices=["production", "template"])
+    before = serializers.CharField(allow_blank=True)
+    after = serializers.CharField()
+
+
+class ProposedChangeSerializer(serializers.Serializer[Any]):
+    """``phrases`` that may be said beside ``old``. Each of ``comments`` is a line that refuses one of them."""
+
+    old = serializers.CharField()
+    phrases = serializers.ListField(child=serializers.CharField())
+    edits = ProposedEditSerializer(many=True)
+    lines = lines_of_numbers()
+    comments = serializers.ListField(child=serializers.CharField())
+
+
 class ProposalSerializer(serializers.Serializer[Any]):
-    """What lines propose. ``understood`` are those that the world understands already."""
+    """What lines propose. ``changes`` are what becomes of stored lines, ``understood`` the lines that the world
+    understands already."""
 
     problems = ProblemItemSerializer(many=True)
     classes = ProposedClassSerializer(many=True)
     predicates = ProposedPredicateSerializer(many=True)
     productions = ProposedProductionSerializer(many=True)
     templates = ProposedTemplateSerializer(many=True)
+    changes = ProposedChangeSerializer(many=True)
     offers = OfferedLineSerializer(many=True)
     doubts = OpenQuestionSerializer(many=True)
     understood = lines_of_numbers()
 
 
 class StoredExamplesSerializer(serializers.Serializer[Any]):
-    """How many rows were added; ``changed`` are predicates that take other arguments as well now."""
+    """How many rows were added. ``changed`` are predicates that take other arguments as well now, ``lengthened``
+    productions and templates that say more."""
 
     classes = serializers.IntegerField()
     entities = serializers.IntegerField()
@@ -122,6 +143,7 @@ class StoredExamplesSerializer(serializers.Serializer[Any]):
     productions = serializers.IntegerField()
     templates = serializers.IntegerField()
     utterances = serializers.IntegerField()
+    lengthened = serializers.IntegerField()
 
 
 class Proposals(Check):
@@ -177,6 +199,7 @@ def shown(proposal: Proposal) -> dict[str, Any]:
             for name, expansion in new_productions(proposal)
         ],
         "templates": proposal.templates,
+        "changes": proposal.changes,
         "offers": proposal.offers,
         "doubts": proposal.doubts,
         "understood": proposal.understood,

@@ -9,6 +9,7 @@ from itertools import count, islice
 
 from annotations.language.forms import head_predicate
 from annotations.language.induction import (
+    Change,
     Derived,
     Doubt,
     KnownWorld,
@@ -85,6 +86,17 @@ class ShownWords:
 
 
 @dataclass(frozen=True, slots=True)
+class ShownChange:
+    """``edits`` are stored lines before and after; ``comments`` the lines that refuse the change."""
+
+    old: str
+    phrases: str
+    edits: tuple[tuple[str, str], ...]
+    comments: tuple[str, ...]
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class ShownOffers:
     """``lines`` are some of ``total``, each beside the command alone."""
 
@@ -103,6 +115,7 @@ class ShownProposal:
     predicates: tuple[ShownPredicate, ...]
     words: tuple[ShownWords, ...]
     templates: tuple[ShownTemplate, ...]
+    changes: tuple[ShownChange, ...]
     doubts: tuple[ShownDoubt, ...]
     offers: tuple[ShownOffers, ...]
     understood: str
@@ -118,6 +131,7 @@ def shown(proposal: Proposal, known: KnownWorld) -> ShownProposal:
         "thing": sum(len(each.new) for each in classes),
         "action": sum(not each.is_known for each in predicates),
         "template": len(proposal.templates),
+        "change": len(proposal.changes),
     }
     return ShownProposal(
         ", ".join(say_count(number, noun) for noun, number in new.items() if number),
@@ -125,6 +139,7 @@ def shown(proposal: Proposal, known: KnownWorld) -> ShownProposal:
         predicates,
         tuple(map(_words, proposal.synonyms)),
         tuple(map(_template, proposal.templates)),
+        tuple(map(_change, proposal.changes)),
         tuple(_doubt(each, proposal) for each in proposal.doubts[:MOST_SHOWN]),
         tuple(_offers(proposal.offers)),
         _lines(proposal.understood),
@@ -235,6 +250,14 @@ def _derived(each: Derived) -> str:
     old, new = " ".join(each.old) or "nothing", " ".join(each.new) or "nothing"
     pairs = say_count(len(each.examples), "pair")
     return f"nobody has said it: “{new}” for “{old}”, as in {pairs} of lines"
+
+
+def _change(each: Change) -> ShownChange:
+    edits = tuple((edit.before, edit.after) for edit in each.edits)
+    why = f"{_lines(each.lines)}: all else is as in a template"
+    if each.templates > 1:
+        why += f"; {say_count(each.templates, 'template')} say “{each.old}”"
+    return ShownChange(each.old, ", ".join(each.phrases), edits, each.comments, why)
 
 
 def _doubt(each: Doubt, proposal: Proposal) -> ShownDoubt:

@@ -128,10 +128,47 @@ def test_a_program_reads_the_proposal_and_stores_it(call_as, annotator, admin, w
     assert stored.status_code == 201
     assert stored.json() == {
         **{"classes": 2, "entities": 3, "predicates": 1, "changed": 0},
-        **{"productions": 3, "templates": 2, "utterances": 3},
+        **{"productions": 3, "templates": 2, "utterances": 3, "lengthened": 0},
     }
     known = call_as(annotator, "post", f"{ROUTES}/proposals/", {"lines": JOINED.splitlines()})
     assert known.json()["understood"] == [1, 2, 3] and known.json()["templates"] == []
+
+
+def test_a_change_of_what_is_stored_is_shown_and_can_be_refused(adam, world):
+    adam.post(PAGE, {"lines": JOINED})
+    later = "sprinkle the [roses] = water"
+    shown = adam.post(PREVIEW, {"lines": later}).content.decode()
+    assert "changes-title" in shown
+    for text in ("$water = water | irrigate", "$water = water | irrigate | sprinkle"):
+        assert f"<code>{text}</code>" in shown
+    (comment,) = re.findall(r'name="line" value="(# sprinkle [^"]*)"', shown)
+    refused = adam.post(PREVIEW, {"lines": later, "change": "add", "line": comment})
+    assert rewritten(refused) == f"{later}\n# sprinkle is not $water"
+    assert "changes-title" not in refused.content.decode()
+    tried = adam.post(TRY, {"lines": later, "said": "sprinkle the tomatoes in bed two"})
+    assert "<figure" in tried.content.decode()
+    before = SemanticTemplate.objects.count()
+    adam.post(PAGE, {"lines": later})
+    assert SemanticTemplate.objects.count() == before
+
+
+def test_a_program_reads_and_refuses_a_change(call_as, admin, world):
+    call_as(admin, "post", f"{ROUTES}/examples/", {"lines": JOINED.splitlines()})
+    later = ["sprinkle the [roses] = water"]
+    answer = call_as(admin, "post", f"{ROUTES}/proposals/", {"lines": later}).json()
+    (change,) = answer["changes"]
+    assert change["phrases"] == ["sprinkle"] and change["old"] == "$water"
+    assert change["edits"] == [
+        {
+            "kind": "production",
+            "before": "$water = water | irrigate",
+            "after": "$water = water | irrigate | sprinkle",
+        }
+    ]
+    sent = {"lines": [*later, *change["comments"]]}
+    assert not call_as(admin, "post", f"{ROUTES}/proposals/", sent).json()["changes"]
+    stored = call_as(admin, "post", f"{ROUTES}/examples/", {"lines": later}).json()
+    assert (stored["lengthened"], stored["templates"], stored["productions"]) == (1, 0, 0)
 
 
 def test_only_so_many_lines_are_sent(call_as, annotator):
