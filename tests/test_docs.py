@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 from django.core.management import get_commands, load_command_class
 
 from parser_service.parsers.registry import parsers
@@ -233,6 +236,64 @@ def test_the_readme_has_the_figures_of_the_docs():
     text = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
     rows = set(re.findall(r"^\| `[\w-]+` \| .*$", README, re.MULTILINE))
     assert len(rows) == 4 and rows <= set(text.splitlines())
+
+
+COLUMNS = ("gen-gen", "gen-para", "para-para", "gen+para-para")  # of the tables of the paper
+
+
+def test_figures_of_the_test_part_are_those_that_were_measured(shared_data):
+    """They are the last of each cell of Table 3: on the page about it, by command and by form, and in the README."""
+    file = shared_data / "test-figures.json"
+    cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+    measured = {
+        tuple(cell[key] for key in ("parser", "criterion", "setting", "protocol")): cell
+        for cell in cells
+    }
+    page = (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")
+    by_command, by_form = page.split("## By form")
+    rows = 0
+    for text, criterion in (
+        (by_command, "command"),
+        (by_form, "logical_form"),
+        (README, "command"),
+    ):
+        for name, row in re.findall(
+            r"^\| `([\w-]+)`[\w, ]*((?: \|[^|\n]* / [^|\n]*)+) \|$", text, re.M
+        ):
+            protocol = "grammar" if name == "grammar-oracle" else "strict"
+            for setting, shown in zip(COLUMNS, row.split("|")[1:], strict=True):
+                cell = measured.get((name, criterion, setting, protocol))
+                expected = f"{100 * cell['accuracy_test']:.1f}" if cell else "–"
+                assert shown.split("/")[-1].strip() == expected, (name, criterion, setting)
+            rows += 1
+    assert rows == 10 + 8 + 6
+    for key in (
+        ("ranker", "command", "gen-gen", "domain"),
+        ("ranker", "command", "gen-para", "domain"),
+        ("ranker", "logical_form", "gen+para-para", "domain"),
+        ("ranker", "logical_form", "gen+para-para", "strict"),
+        ("ranker", "logical_form", "gen-gen", "strict"),
+        ("ranker", "logical_form", "para-para", "domain"),
+    ):
+        assert f"{100 * measured[key]['accuracy_test']:.1f}" in page, key
+    for key in (
+        ("ranker", "command", "gen+para-para", "strict"),
+        ("ranker", "logical_form", "gen+para-para", "strict"),
+    ):
+        low, high = measured[key]["interval_test"]
+        assert f"{100 * low:.1f}–{100 * high:.1f}" in page, key
+
+
+def test_the_file_for_citations_names_this_version_and_the_paper():
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    page = (DOCS / "research" / "citing.md").read_text(encoding="utf-8")
+    assert cited["cff-version"] == "1.2.0" and cited["message"]
+    assert (cited["version"], cited["license"]) == (project["version"], project["license"])
+    assert f"version = {{{cited['version']}}}" in page
+    paper, corpus = cited["references"]
+    for each in (paper["title"], corpus["title"], corpus["doi"]):
+        assert each in page and each
 
 
 def test_the_table_of_the_paper_is_called_as_the_paper_calls_it():
