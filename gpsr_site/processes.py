@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from pathlib import Path
 from types import FrameType
 
 from gpsr_site.__main__ import command_line
@@ -35,6 +36,7 @@ class Supervisor:
 
     Args:
         later: the commands of children that are not started before ``is_time``.
+        log: the file to which the children write, written anew; None for the output of this process.
     """
 
     def __init__(
@@ -43,11 +45,13 @@ class Supervisor:
         say: Callable[[str], object],
         later: Mapping[str, Sequence[str]] | None = None,
         is_time: Callable[[], bool] = lambda: True,
+        log: Path | None = None,
     ) -> None:
         self.commands = {**commands, **(later or {})}
         self.say = say
         self.later = list(later or {})
         self.is_time = is_time
+        self.output = log.open("wb") if log else None
         self.children: dict[str, subprocess.Popen[bytes]] = {}
         self.started_at: dict[str, float] = {}
         self.restart_at: dict[str, float] = {}
@@ -85,6 +89,8 @@ class Supervisor:
         self.started_at[name] = time.monotonic()
         self.children[name] = subprocess.Popen(
             self.commands[name],
+            stdout=self.output,
+            stderr=self.output,
             start_new_session=True,
             preexec_fn=partial(_end_with_parent, os.getpid()) if LIBC else None,
         )

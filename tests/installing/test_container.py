@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
+import threading
+import tomllib
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -16,10 +21,13 @@ from annotations.models.background import Queue
 ROOT = Path(__file__).resolve().parents[2]
 LINES = (ROOT / "Containerfile").read_text(encoding="utf-8").splitlines()
 STEPS = [line.split(maxsplit=1) for line in LINES if line and not line.startswith("#")]
-KNOWN = {"FROM", "WORKDIR", "COPY", "RUN", "ENV", "USER", "VOLUME", "EXPOSE", "ENTRYPOINT", "CMD"}
+KNOWN = {
+    *("FROM", "ARG", "WORKDIR", "COPY", "RUN", "ENV", "USER", "VOLUME", "EXPOSE"),
+    *("HEALTHCHECK", "ENTRYPOINT", "CMD"),
+}
 DOCUMENTED = (ROOT / "docs" / "reference" / "variables.md").read_text(encoding="utf-8")
 VARIABLES = set(re.findall(r"^\| `([A-Z_]+)` \|", DOCUMENTED, re.MULTILINE))
-OF_OTHERS = {"PYTHONUNBUFFERED", "PIP_NO_CACHE_DIR"}
+OF_OTHERS = {"PYTHONUNBUFFERED", "PIP_NO_CACHE_DIR", "PIP_EXTRA_INDEX_URL"}
 
 
 def arguments(name: str) -> list[str]:
@@ -39,7 +47,9 @@ def test_what_is_copied_is_there(copied):
 
 def test_it_calls_a_command_as_somebody_who_is_not_root():
     (entry,), (command,) = arguments("ENTRYPOINT"), arguments("CMD")
-    assert json.loads(entry) == ["python", "manage.py"]
+    program, manage = json.loads(entry)
+    assert (program, manage) == ("gpsr-workbench", "manage")
+    assert program in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
     assert json.loads(command)[0] in get_commands()
     assert arguments("USER") == ["gpsr"]
 
@@ -49,7 +59,27 @@ def test_its_variables_are_documented():
     assert names - OF_OTHERS <= VARIABLES
 
 
-def test_packages_of_python_are_all_copied():
+@pytest.mark.parametrize("status, code", [(200, 0), (400, 0), (503, 1)])
+def test_the_check_of_health_asks_what_serves(status, code):
+    (words,) = arguments("HEALTHCHECK")
+    _, python, option, program = json.loads(
+        words[words.index("CMD") :].replace("CMD [", '["CMD", ')
+    )
+
+    class Answer(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(status if self.path == "/healthz" else 500)
+            self.end_headers()
+
+    with HTTPServer(("127.0.0.1", 0), Answer) as server:
+        threading.Thread(target=server.handle_request, daemon=True).start()
+        program = program.replace("8000", str(server.server_port))
+        assert (python, option) == ("python", "-c")
+        done = subprocess.run([sys.executable, option, program], check=False)
+    assert done.returncode == code
+
+
+def test_the_wheel_is_made_of_all_sources():
     packages = {path.parent.name for path in ROOT.glob("*/apps.py")}
     assert {f"{name} ./{name}" for name in packages} <= set(arguments("COPY"))
 
@@ -74,6 +104,20 @@ def test_the_services_are_commands_of_this_project():
 def test_what_lasts_is_started_again(name):
     lasts = OURS[name]["command"][0] not in ("migrate", "collectstatic")
     assert OURS[name]["restart"] == ("unless-stopped" if lasts else "no")
+
+
+def test_each_part_says_how_it_is_checked():
+    serving = {"serve": None, "parse_server": "http://127.0.0.1:8100/healthz"}
+    for each in OURS.values():
+        check = each.get("healthcheck")
+        address = serving.get(each["command"][0], "unchecked")
+        if address is None:  # by the image
+            assert check is None
+        elif address == "unchecked":
+            assert check == {"disable": True}
+        else:
+            assert address in check["test"][-1]
+            assert each["environment"]["PARSER_PORT"] == "8100"
 
 
 def test_the_services_know_one_another():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pty
 import random
 import signal
 import socket
@@ -46,6 +47,29 @@ class Installation:
             start_new_session=True,
         )
         wait_for(self.announces, "the address is printed")
+
+    def start_on_a_terminal(self) -> str:
+        """Start on a terminal. Return what stands there once the workers are at work."""
+        terminal, end = pty.openpty()
+        self.process = subprocess.Popen(
+            [sys.executable, "manage.py", "quickstart"],
+            cwd=ROOT,
+            env=self.environment,
+            stdin=end,
+            stdout=end,
+            stderr=end,
+            start_new_session=True,
+        )
+        os.close(end)
+        written = self.folder / "quickstart.log"
+        wait_for(lambda: written.exists() and b"ready" in written.read_bytes(), "workers are ready")
+        self.process.send_signal(signal.SIGTERM)
+        said = b""
+        with suppress(OSError):  # the end of a terminal
+            while piece := os.read(terminal, 10_000):
+                said += piece
+        os.close(terminal)
+        return said.decode()
 
     def announces(self) -> bool:
         assert self.process is not None and self.process.poll() is None, self.said()
@@ -119,6 +143,13 @@ def test_it_serves_trains_and_stops_twice_over(installation):
     assert installation.count("SELECT count(*) FROM parser_service_trainingrun") == runs
     assert installation.stop() == 0
     assert installation.remaining_processes() == []
+
+
+def test_a_terminal_ends_with_the_address_and_the_password(installation, migrated_database):
+    copy_installation(migrated_database, installation.folder)
+    *_, address, password, change, stopped = installation.start_on_a_terminal().splitlines()
+    assert f":{installation.port}/" in address and "password: " in password
+    assert "changepassword" in change and stopped == "Stopped."
 
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="Linux ends them")

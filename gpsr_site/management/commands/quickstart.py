@@ -7,6 +7,7 @@ import threading
 import time
 import urllib.error
 import urllib.request
+from pathlib import Path
 from typing import Any
 
 from django.conf import settings
@@ -37,7 +38,6 @@ class Command(BaseCommand):
         self.refuse_a_taken_port()
         call_command("migrate", interactive=False, verbosity=0)
         call_command("collectstatic", interactive=False, verbosity=0)
-        self.create_admin()
         request_first_runs(self.load_world())
         later = {
             "training worker": worker_command("cpu", "gpu"),
@@ -48,7 +48,7 @@ class Command(BaseCommand):
         # People wait for the first page, so the others leave it the cores.
         is_announced = threading.Event()
         web_servers = web_server_commands(settings.WEB_PROCESSES)
-        supervisor = Supervisor(web_servers, self.say, later, is_announced.is_set)
+        supervisor = Supervisor(web_servers, self.say, later, is_announced.is_set, self.log)
         supervisor.start()
         threading.Thread(target=self.announce, args=[is_announced], daemon=True).start()
         supervisor.watch()
@@ -57,6 +57,11 @@ class Command(BaseCommand):
     def say(self, sentence: str) -> None:
         self.stdout.write(sentence)
         self.stdout.flush()
+
+    @property
+    def log(self) -> Path | None:
+        """The file that the parts write to where a person reads the output, which ends with how to log in."""
+        return settings.VAR_DIR / "quickstart.log" if self.stdout.isatty() else None
 
     @property
     def address(self) -> str:
@@ -71,22 +76,19 @@ class Command(BaseCommand):
                 f"Stop what uses it, or choose another port: PORT={settings.PORT + 1} make run"
             ) from error
 
-    def create_admin(self) -> None:
-        """Create the first administrator, with a password that is printed now and never again."""
+    def create_admin(self) -> str:
+        """Make the first administrator where there is none. Return how to log in, which nobody is told again."""
         if User.objects.filter(is_superuser=True).exists():
-            return
+            return ""
         password = secrets.token_urlsafe(12)
         try:
             with transaction.atomic():
                 User.objects.create_superuser("admin", password=password)
         except IntegrityError:
-            self.say(
-                "There is an account “admin” already; gpsr-workbench manage createsuperuser makes another."
-            )
-            return
+            return "There is an account “admin” already; gpsr-workbench manage createsuperuser makes another."
         record_command("make an account", "admin, administrator of the site")
-        self.say(f"Created the administrator. Log in as: admin   password: {password}")
-        self.say(
+        return (
+            f"Log in as: admin   password: {password}\n"
             "The password is not shown again; change it with: gpsr-workbench manage changepassword admin"
         )
 
@@ -104,11 +106,14 @@ class Command(BaseCommand):
         deadline = time.monotonic() + HEALTH_PATIENCE_SECONDS
         while not (answers := self.answers()) and time.monotonic() < deadline:
             time.sleep(0.2)
-        is_announced.set()
         if answers:
-            self.say(f"GPSR Workbench is at {self.address} (Ctrl-C stops it)")
+            where = f"GPSR Workbench is at {self.address} (Ctrl-C stops it)"
         else:
-            self.say(f"The web server has not answered at {self.address} for a minute.")
+            where = f"The web server has not answered at {self.address} for a minute."
+        parts = f"The parts write to {self.log}" if self.log else ""
+        # At once, so that nothing comes between the address and the password.
+        self.say("\n".join(filter(None, (parts, where, self.create_admin()))))
+        is_announced.set()
 
     def answers(self) -> bool:
         """Return whether the web server answers at all; what it answers is the page's business."""
