@@ -43,7 +43,7 @@ _MARK = re.compile(r"\[(?P<text>[^\[\]]*)\](?:\((?P<token>[^()]*)\))?|[^\s\[\]]+
 _WORD = re.compile(r"[^\s,.;:!?\"“”]+|,")
 _NAME = re.compile(r"[a-z]\w*")
 _APART = re.compile(r"#\s*(\[[^\[\]]+\]|\S+) is not (\[[^\[\]]+\]|\S+)\s*")
-_ENGLISH = re.compile(r"#\s*(?P<name>[a-z]\w*)\s*:\s*(?P<gloss>\S.*)")
+_ENGLISH = re.compile(r"#\s*([a-z]\w*)\s*:\s*(\S.*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,7 +262,7 @@ def said_english(text: str) -> dict[str, tuple[str, int]]:
     found: dict[str, tuple[str, int]] = {}
     for number, line in enumerate(text.splitlines()[:MOST_LINES], start=1):
         if match := _ENGLISH.fullmatch(normalise_line(line)):
-            found[match["name"]] = match["gloss"], number
+            found[match[1]] = match[2], number
     return found
 
 
