@@ -105,7 +105,7 @@ def store_examples(
             raise NoExamples(problems)
         remember(by, once, held.pk)
         changed = [
-            (row, {"signatures": _signatures(each)})
+            (row, {"signatures": _signatures(each), "gloss": each.gloss})
             for each in new_predicates(proposal, known)
             for row in held.predicates.filter(name=each.name)
         ]

@@ -25,6 +25,7 @@ from annotations.language.induction.marked_lines import (
     read_example,
     read_examples,
     text_of,
+    with_english,
 )
 from annotations.language.induction.offers import Offer, OfferKind
 from annotations.language.induction.proposal import (

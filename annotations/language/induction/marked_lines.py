@@ -5,7 +5,8 @@
 
 A class may stand behind a mark, in parentheses, as in the training files of Rasa. Behind an equals sign stands what
 the command means: the name of its predicate, or its whole form with the marked texts as constants. A comment can say
-that two predicates, or the classes of two marks, are not one: ``# irrigate is not water``.
+that two predicates, or the classes of two marks, are not one: ``# irrigate is not water``. Another one gives a
+predicate its English: ``# water: give water to {1} | give water to {1} in {2}``.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from annotations.language.texts import (
     COURTESY_CLOSINGS,
     COURTESY_OPENINGS,
     MAX_ENTITY,
+    MAX_GLOSS,
     MAX_PREDICATE,
     LanguageError,
     Position,
@@ -41,6 +43,7 @@ _MARK = re.compile(r"\[(?P<text>[^\[\]]*)\](?:\((?P<token>[^()]*)\))?|[^\s\[\]]+
 _WORD = re.compile(r"[^\s,.;:!?\"“”]+|,")
 _NAME = re.compile(r"[a-z]\w*")
 _APART = re.compile(r"#\s*(\[[^\[\]]+\]|\S+) is not (\[[^\[\]]+\]|\S+)\s*")
+_ENGLISH = re.compile(r"#\s*([a-z]\w*)\s*:\s*(\S.*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,3 +255,26 @@ def said_apart(text: str) -> frozenset[frozenset[str]]:
     """Return the pairs of names, and of marked texts in their brackets, that a text says are not one."""
     found = map(_APART.fullmatch, map(str.strip, text.splitlines()))
     return frozenset(frozenset(match.groups()) for match in found if match)
+
+
+def said_english(text: str) -> dict[str, tuple[str, int]]:
+    """Return name → the gloss pattern that a comment gives it, and its line; the last one counts."""
+    found: dict[str, tuple[str, int]] = {}
+    for number, line in enumerate(text.splitlines()[:MOST_LINES], start=1):
+        if match := _ENGLISH.fullmatch(normalise_line(line)):
+            found[match[1]] = match[2], number
+    return found
+
+
+def with_english(text: str, name: str, gloss: str) -> str:
+    """Return the lines with a comment that gives the predicate ``name`` a gloss pattern; without one where it is empty.
+
+    Raises LanguageError where it is too long to store.
+    """
+    require_length(gloss := normalise_line(gloss), "English sentence", MAX_GLOSS, Position())
+    comment = f"# {name}: {gloss}" if gloss else ""
+    lines = text.splitlines()
+    if (known := said_english(text).get(name)) is not None:
+        lines[known[1] - 1 : known[1]] = filter(None, [comment])
+        return "\n".join(lines)
+    return "\n".join(filter(None, [text.rstrip(), comment]))

@@ -45,6 +45,8 @@ from annotations.language.induction.marked_lines import (
     read_examples,
     rewritten,
     said_apart,
+    said_english,
+    with_english,
 )
 from annotations.language.induction.offers import Offer, offers_for
 from annotations.language.induction.rules import (
@@ -62,7 +64,9 @@ from annotations.language.templates import TemplateChart
 from annotations.language.texts import (
     DETERMINERS,
     MAX_GLOSS,
+    Position,
     Problem,
+    error_at,
 )
 from annotations.language.world import Predicate, PredicateKind, signature_of
 
@@ -286,6 +290,15 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         used[head].append(each.example.line)
         of_lines[each.example.line].append(head)
     named = {each.example.action for each in clauses} | known.predicates.keys()
+    comments = {name: said for name, said in said_english(text).items() if name in used}
+    english = {name: gloss for name, (gloss, _) in comments.items() if len(gloss) <= MAX_GLOSS}
+    problems += tuple(
+        error_at(
+            Position(line=line), f"the English of {name} is too long", f"{MAX_GLOSS} is the limit"
+        )
+        for name, (_, line) in comments.items()
+        if name not in english
+    )
     predicates = tuple(
         ProposedPredicate(
             _predicate(
@@ -296,6 +309,7 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
                     if head_predicate(rule.form) == name
                 ],
                 known,
+                english,
             ),
             tuple(sorted(set(where))),
             name in named,
@@ -387,12 +401,21 @@ def _renamed(
     return tuple(renamed), tuple(written)
 
 
-def _predicate(name: str, rules: Sequence[Rule], known: KnownWorld) -> Predicate:
-    """Return a predicate with the signatures that the rules use, and how they say it in English."""
+def _predicate(
+    name: str, rules: Sequence[Rule], known: KnownWorld, english: Mapping[str, str]
+) -> Predicate:
+    """Return a predicate with the signatures that the rules use, and how they say it in English.
+
+    ``english`` has the gloss patterns that somebody has written. One of the world is as it is there, unless it takes
+    other arguments as well now.
+    """
     own = known.predicates.get(name)
-    uses = {signature_of(each.form) for each in rules if isinstance(each.form, Application)}
-    if own is not None:
-        return replace(own, signatures=(*own.signatures, *sorted(uses - {*own.signatures})))
+    before = own.signatures if own else ()
+    new = sorted(
+        {signature_of(r.form) for r in rules if isinstance(r.form, Application)} - {*before}
+    )
+    if own is not None and not new:
+        return own
     said: dict[int, str] = {}
     for rule in sorted(rules, key=lambda each: len(each.words)):
         form = rule.form
@@ -400,9 +423,18 @@ def _predicate(name: str, rules: Sequence[Rule], known: KnownWorld) -> Predicate
             isinstance(each, Wildcard) for each in form.arguments
         ):
             said.setdefault(len(form.arguments), _gloss(rule, form))
+    if own is not None:
+        arities = {len(each.arguments) for each in before}
+        more = [said[arity] for arity in said if arity not in arities] if own.gloss else []
+        longer = " | ".join((own.gloss, *more))
+        gloss = longer if len(longer) <= MAX_GLOSS else own.gloss
+        return replace(own, signatures=(*before, *new), gloss=english.get(name, gloss))
     gloss = " | ".join(said.values())
     return Predicate(
-        name, PredicateKind.ACTION, tuple(sorted(uses)), gloss if len(gloss) <= MAX_GLOSS else ""
+        name,
+        PredicateKind.ACTION,
+        tuple(new),
+        english.get(name, gloss if len(gloss) <= MAX_GLOSS else ""),
     )
 
 
@@ -527,4 +559,8 @@ def with_predicate_named(text: str, proposal: Proposal, predicate: str, name: st
         one = len(clauses_of(example)) == 1 and example.form is None
         return replace(example, action=name) if is_of_it and one else example
 
+    english = said_english(text)
+    if predicate in english and name != predicate:
+        text = with_english(text, predicate, "")
+        text = text if name in english else with_english(text, name, english[predicate][0])
     return rewritten(text, change)

@@ -19,6 +19,7 @@ from annotations.language.induction import (
     Proposal,
     marked,
     with_class_named,
+    with_english,
     with_predicate_named,
 )
 from annotations.language.world import Ontology
@@ -55,9 +56,10 @@ class ExamplesForm(forms.Form):
 def corrected(text: str, proposal: Proposal, sent: QueryDict, ontology: Ontology) -> str:
     """Return the lines as a correction of their proposal rewrites them; as they are without one.
 
-    ``change`` is ``class`` or ``predicate``, which give what is called ``of`` the name ``name``, or ``add``, which
-    appends each ``line``, what was ``said`` with the entities of ``ontology`` marked, and all offers of the kind
-    ``offers``. Raises LanguageError for what can be no name.
+    ``change`` is ``class`` or ``predicate``, which give what is called ``of`` the name ``name``; ``english``, which
+    gives the predicate ``of`` the English ``gloss``; or ``add``, which appends each ``line``, what was ``said`` with
+    the entities of ``ontology`` marked, and all offers of the kind ``offers``. Raises LanguageError for what can be
+    no name, and for English that is too long.
     """
     change, old = sent.get("change", ""), sent.getlist("of")
     name = re.sub(r"\W+", "_", sent.get("name", "").strip()).strip("_")
@@ -69,6 +71,9 @@ def corrected(text: str, proposal: Proposal, sent: QueryDict, ontology: Ontology
         require_predicate(name)
         for predicate in old:
             text = with_predicate_named(text, proposal, predicate, name)
+    elif change == "english":
+        for predicate in old:
+            text = with_english(text, predicate, sent.get("gloss", ""))
     elif change == "add":
         kind = sent.get("offers", "")
         lines = [

@@ -49,11 +49,16 @@ class ShownClass:
 
 @dataclass(frozen=True, slots=True)
 class ShownPredicate:
-    """``english`` has class tokens in the places of the arguments, a sentence for each number of them."""
+    """``english`` has class tokens in the places of the arguments, a sentence for each number of them.
+
+    ``gloss`` is their pattern. ``is_changed`` says that the world has it otherwise, or not at all.
+    """
 
     name: str
     is_known: bool
     signatures: str
+    gloss: str
+    is_changed: bool
     english: tuple[str, ...]
     why: str
     samples: tuple[str, ...]
@@ -198,6 +203,8 @@ def _predicates(proposal: Proposal, known: KnownWorld) -> Iterator[ShownPredicat
             name,
             is_known,
             " ".join(print_signatures(predicate.signatures).splitlines()),
+            predicate.gloss,
+            known.predicates.get(name) != predicate,
             tuple(_english(predicate.gloss, predicate.signatures)),
             f"{_lines(each.lines)}: {source}",
             tuple(islice(_samples(of_head[name], texts, phrases, said), MOST_SAMPLES)),

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from annotations.language.induction import MOST_LINES
-from annotations.models import AuditEntry, SemanticTemplate, TaskCategory
+from annotations.models import AuditEntry, Predicate, SemanticTemplate, TaskCategory
 
 PAGE = "/w/home/examples/"
 PREVIEW, TRY = f"{PAGE}preview/", f"{PAGE}try/"
@@ -42,6 +42,12 @@ def rewritten(response) -> str:
             {"change": "add", "offers": "order"},
             f"{LINES}\nin [bed two](bed), water the [tomatoes]",
         ),
+        (
+            {"change": "english", "of": "water", "gloss": " give  water to {1} | water {1} in {2}"},
+            f"{LINES}\n# water: give water to {{1}} | water {{1}} in {{2}}",
+        ),
+        ({"change": "english", "of": "water", "gloss": "x" * 300}, ""),
+        ({"change": "english", "of": "water", "gloss": ""}, ""),
         ({"change": "other"}, ""),
     ],
 )
@@ -169,6 +175,33 @@ def test_a_program_reads_and_refuses_a_change(call_as, admin, world):
     assert not call_as(admin, "post", f"{ROUTES}/proposals/", sent).json()["changes"]
     stored = call_as(admin, "post", f"{ROUTES}/examples/", {"lines": later}).json()
     assert (stored["lengthened"], stored["templates"], stored["productions"]) == (1, 0, 0)
+
+
+def test_english_is_written_into_the_lines_and_stored(call_as, adam, admin, world):
+    english = "# water: give water to {1} | give water to {1} in {2}"
+    sent = {"change": "english", "of": "water", "gloss": "wet {1}"}
+    again = adam.post(PREVIEW, {"lines": f"{JOINED}\n{english}", **sent})
+    assert rewritten(again) == f"{JOINED}\n# water: wet {{1}}"
+    named = {"change": "predicate", "of": "water", "name": "sprinkle"}
+    renamed = rewritten(adam.post(PREVIEW, {"lines": f"{LINES}\n{english}", **named}))
+    assert renamed.endswith(english.replace("# water", "# sprinkle"))
+    lines = [*JOINED.splitlines(), english]
+    answer = call_as(admin, "post", f"{ROUTES}/proposals/", {"lines": lines}).json()
+    assert answer["predicates"][0]["gloss"] == "give water to {1} | give water to {1} in {2}"
+    long = [*JOINED.splitlines(), f"# water: {'wet ' * 60}"]
+    problems = call_as(admin, "post", f"{ROUTES}/proposals/", {"lines": long}).json()["problems"]
+    assert [each["line"] for each in problems] == [4]
+    call_as(admin, "post", f"{ROUTES}/examples/", {"lines": lines})
+    assert Predicate.objects.get().gloss == "give water to {1} | give water to {1} in {2}"
+
+
+def test_english_of_the_world_grows_with_its_arguments(adam, world):
+    adam.post(PAGE, {"lines": "water the [roses](plant)\n# water: wet {1}"})
+    adam.post(PAGE, {"lines": "water the [roses]\n# water: something else"})
+    assert Predicate.objects.get().gloss == "wet {1}"
+    adam.post(PAGE, {"lines": "water the [roses] in [bed two](bed)"})
+    assert Predicate.objects.get().gloss == "wet {1} | water {1} in {2}"
+    assert Predicate.objects.get().signatures == [["plant"], ["plant", "bed"]]
 
 
 def test_only_so_many_lines_are_sent(call_as, annotator):
