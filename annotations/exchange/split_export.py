@@ -90,8 +90,8 @@ def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
     """
     counts = _count_files(split)
     if as_ == SplitFormat.DATASETS:
-        for path, pieces in _dataset_files(split):
-            _write(target / path, pieces)
+        for name, pieces in _dataset_files(split):
+            _write(target / name, pieces)
         return {
             str(target / _dataset_path(part)): sum(n for _, of, n in counts if of == part)
             for part in dict.fromkeys(part for _, part, _ in counts)
