@@ -1,4 +1,5 @@
-"""Verb: export a split, row by row: pair files (docs/reference/formats.md, Pairs), JSON Lines, CSV, Parquet."""
+"""Verb: export a split, row by row: pair files (docs/reference/formats.md, Pairs), JSON Lines, CSV, Parquet,
+a data set of Hugging Face."""
 
 from __future__ import annotations
 
@@ -10,10 +11,11 @@ from pathlib import Path
 from django.db import models
 from django.db.models import Count, QuerySet
 
+from annotations.exchange.dataset_card import write_card
 from annotations.exchange.pipe import Pipe
 from annotations.exchange.split_manifest import manifest_of
 from annotations.exchange.tables import CHUNK, table_pieces, text_pieces
-from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, Criterion, write_pairs
+from annotations.language.corpus import CORPUS_FOLDERS, PART_FILES, Criterion, Part, write_pairs
 from annotations.language.texts import Refusal
 from annotations.models import Example, Split
 
@@ -33,13 +35,15 @@ MANIFEST = "manifest.json"
 
 
 class SplitFormat(models.TextChoices):
-    """``zip`` holds the pair files of all parts with the manifest, as an import of pairs takes them."""
+    """``zip`` holds the pair files of all parts with the manifest, as an import of pairs takes them; ``datasets`` a
+    Parquet file a part with a card, as ``datasets.load_dataset`` does."""
 
     TXT = "txt"
     JSONL = "jsonl"
     CSV = "csv"
     PARQUET = "parquet"
     ZIP = "zip"
+    DATASETS = "datasets"
 
 
 def export_pieces(
@@ -54,7 +58,9 @@ def export_pieces(
         case SplitFormat.TXT:
             return text_pieces(pair_lines(split, part, source))
         case SplitFormat.ZIP:
-            return _pair_archive(split, part, source)
+            return _archive(_pair_files(split, part, source))
+        case SplitFormat.DATASETS:
+            return _archive(_dataset_files(split, part, source))
         case SplitFormat.PARQUET:
             return table_pieces(rows, FIELDS, as_, TYPES, manifest_of(split, part, source))
     return table_pieces(rows, FIELDS, as_)
@@ -78,10 +84,18 @@ def pair_lines(split: Split, part: str | None, source: str | None) -> Iterator[s
 def export_split(split: Split, as_: str, target: Path) -> dict[str, int]:
     """Write a whole split; return the number of examples by path.
 
-    ``txt`` makes a folder of pair files, laid out as ``import_pairs`` reads it (``gen_logical/val.txt``);
-    the other formats make the file ``target``. Raises OSError where that cannot be written.
+    ``txt`` makes a folder of pair files, laid out as ``import_pairs`` reads it (``gen_logical/val.txt``),
+    ``datasets`` one for ``load_dataset``; the other formats make the file ``target``. Raises OSError where that
+    cannot be written.
     """
     counts = _count_files(split)
+    if as_ == SplitFormat.DATASETS:
+        for name, pieces in _dataset_files(split):
+            _write(target / name, pieces)
+        return {
+            str(target / _dataset_path(part)): sum(n for _, of, n in counts if of == part)
+            for part in dict.fromkeys(part for _, part, _ in counts)
+        }
     if as_ != SplitFormat.TXT:
         _write(target, export_pieces(split, as_))
         return {str(target): sum(count for _, _, count in counts)}
@@ -120,16 +134,40 @@ def _chosen(split: Split, part: str | None, source: str | None) -> QuerySet[Exam
     return split.examples.filter(**chosen)
 
 
-def _pair_archive(split: Split, part: str | None, source: str | None) -> Iterator[bytes]:
-    """Yield a zip archive with a pair file for each part of each source, and the manifest."""
+# A file of an archive or a folder: its path, and its content in pieces.
+_File = tuple[str, Iterable[bytes]]
+
+
+def _pair_files(split: Split, part: str | None, source: str | None) -> Iterator[_File]:
+    """Yield a pair file for each part of each source, and the manifest."""
+    for of, where, _ in _count_files(split, part, source):
+        path = f"{folder_of(split, of)}/{PART_FILES[where]}"
+        yield path, export_pieces(split, SplitFormat.TXT, where, of)
+    manifest = json.dumps(manifest_of(split, part, source), ensure_ascii=False, indent=2)
+    yield MANIFEST, [f"{manifest}\n".encode()]
+
+
+def _dataset_files(
+    split: Split, part: str | None = None, source: str | None = None
+) -> Iterator[_File]:
+    """Yield the card of a data set, and a table for each part that is not empty."""
+    counted = {where for _, where, _ in _count_files(split, part, source)}
+    parts = {str(each): _dataset_path(each) for each in Part if each in counted}
+    yield "README.md", [write_card(manifest_of(split, part, source), parts).encode()]
+    for where, path in parts.items():
+        yield path, export_pieces(split, SplitFormat.PARQUET, where, source)
+
+
+def _dataset_path(part: str) -> str:
+    return f"data/{part}.parquet"
+
+
+def _archive(files: Iterable[_File]) -> Iterator[bytes]:
     target = Pipe()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
-        for of, where, _ in _count_files(split, part, source):
-            path = f"{folder_of(split, of)}/{PART_FILES[where]}"
+        for path, pieces in files:
             with archive.open(path, "w", force_zip64=True) as file:
-                for piece in export_pieces(split, SplitFormat.TXT, where, of):
+                for piece in pieces:
                     file.write(piece)
                     yield target.take()
-        manifest = json.dumps(manifest_of(split, part, source), ensure_ascii=False, indent=2)
-        archive.writestr(MANIFEST, f"{manifest}\n")
     yield target.take()

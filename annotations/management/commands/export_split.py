@@ -1,4 +1,4 @@
-"""``export_split W NAME --as txt|jsonl|csv|parquet|zip --output PATH``: exports a frozen split."""
+"""``export_split W NAME --as txt|jsonl|csv|parquet|zip|datasets --output PATH``: exports a frozen split."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from annotations.management.base import ReportingCommand, find_split, find_world
 
 
 class Command(ReportingCommand):
-    help = "Writes a split as a folder of pair files (txt) or as one file (the rest)."
+    help = "Writes a split as a folder of pair files (txt) or of a data set (datasets), or as one file (the rest)."
 
     def add_options(self, parser: CommandParser) -> None:
         parser.add_argument("world")
         parser.add_argument("name")
         parser.add_argument("--as", dest="as_", choices=SplitFormat.values, default=SplitFormat.TXT)
-        parser.add_argument("--output", type=Path, required=True, help="a folder (txt) or file")
+        parser.add_argument(
+            "--output", type=Path, required=True, help="a folder (txt, datasets) or file"
+        )
 
     def report(
         self, *, world: str, name: str, as_: str, output: Path, **options: Any

@@ -1,4 +1,4 @@
-"""Splits as files: pair files, JSON Lines, CSV, Parquet."""
+"""Splits as files: pair files, JSON Lines, CSV, Parquet, a data set of Hugging Face."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class SplitManifest(OfSplit):
 
 @may_take_long
 class SplitExport(OfSplit):
-    """Streams the examples of a frozen split as pair files, JSON Lines, CSV or Parquet.
+    """Streams the examples of a frozen split as pair files, tables, or a data set of Hugging Face.
 
     The manifest stands at ``manifest/``, and inside Parquet files and archives of pair files.
     """
@@ -147,5 +147,6 @@ class SplitExport(OfSplit):
         response[FOUND_WRONG.name] = str(examples_before(split).count())
         response[HASH.name] = split.content_hash
         response["Link"] = '<../manifest/>; rel="describedby"'
-        response["Content-Disposition"] = f'attachment; filename="{name}.{as_}"'
+        suffix = "datasets.zip" if as_ == SplitFormat.DATASETS else as_
+        response["Content-Disposition"] = f'attachment; filename="{name}.{suffix}"'
         return response

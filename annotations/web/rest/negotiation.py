@@ -18,6 +18,7 @@ CONTENT_TYPES: dict[str, str] = {
     SplitFormat.CSV: "text/csv; charset=utf-8",
     SplitFormat.PARQUET: "application/vnd.apache.parquet",
     SplitFormat.ZIP: "application/zip",
+    SplitFormat.DATASETS: "application/zip",
     "conllup": "text/plain; charset=utf-8",
     "json": "application/json; charset=utf-8",
     "tex": "application/x-tex; charset=utf-8",

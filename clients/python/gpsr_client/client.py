@@ -154,7 +154,8 @@ class Workbench:
         """Write the examples of a split, named or by its number, to a file and return its path.
 
         The file is written under another name and renamed when it is complete, so that a download that
-        breaks off replaces nothing. ``format`` is one that the page of a split offers: txt, jsonl, csv, parquet, zip.
+        breaks off replaces nothing. ``format`` is one that the page of a split offers: txt, jsonl, csv, parquet, zip,
+        datasets.
         ``part`` is train, validation or test; ``source`` generated or paraphrased. By default all
         examples are written.
         """
