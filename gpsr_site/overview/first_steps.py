@@ -31,7 +31,7 @@ class Beginning(StrEnum):
 
 # The page of the documents that says more.
 GUIDES = {
-    Beginning.EMPTY: "guides/by-example",
+    Beginning.EMPTY: "guides/greenhouse",
     Beginning.COMPETITION: "guides/first-steps#a-world-for-a-competition",
     Beginning.STARTER: "guides/first-steps#the-first-minute",
     Beginning.FILES: "guides/importing",

@@ -61,6 +61,11 @@ export function enhance(page) {
     event.preventDefault();
     if (said.value.trim()) page.querySelector("[data-examples-teach]").click();
   });
+  // What was wrong with the lines when they were sent is no longer true of others.
+  lines.addEventListener("input", () => {
+    lines.removeAttribute("aria-invalid");
+    lines.parentElement.querySelector(".errorlist")?.remove();
+  });
   // The lines that come back with their proposal need no other one.
   let isRewriting = false;
   lines.form.addEventListener("input", () => isRewriting || lines.form.dispatchEvent(new Event("typed")));

@@ -3,7 +3,8 @@
     GPSR_PASSWORD=… python -m tests.browser.guide_pictures --url http://127.0.0.1:8000
 
 They show what is right of the rail. Makes the world ``empty``, unless it is there, for the pages that have nothing to
-show yet. review-long.png and import.png need worlds of their own, and are not made here.
+show yet, and follows the tutorial, for which there must be no world ``greenhouse``. review-long.png and import.png need
+worlds of their own, and are not made here.
 """
 
 from __future__ import annotations
@@ -18,9 +19,20 @@ from playwright.sync_api import Page, sync_playwright
 from tests.browser.chromium import CHROMIUM
 from tests.browser.faults import SETTLED
 from tests.browser.screenshots import log_in
+from tests.browser.tutorial import Follower
 from tests.browser.variants import WIDE_LIGHT
 
-IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+IMAGES = DOCS / "images"
+TUTORIAL = DOCS / "guides" / "greenhouse.md"
+# Of the tutorial, which says where each is taken: name → height.
+OF_TUTORIAL = {
+    "greenhouse-lines": 600,
+    "greenhouse-try": 800,
+    "greenhouse-parse": 460,
+    "greenhouse-plan": 430,
+}
+TALL = {"width": 1280, "height": 1000}  # pictures may be higher than a usual window
 MOST_BYTES = 150_000
 EMPTY = "empty"
 LONG = (
@@ -68,12 +80,24 @@ def take(page: Page, url: str, world: str, picture: Picture) -> None:
     if picture.path == "templates/":
         page.locator("#list a.row-link").nth(2).click()
     page.locator(picture.waits_for).first.wait_for()
+    shoot(page, picture.name, picture.height)
+
+
+def follow_tutorial(page: Page, url: str) -> None:
+    """Make the world of the tutorial as it says, and its pictures on the way."""
+    page.set_viewport_size(TALL)
+    page.goto(url)
+    Follower(page, take=lambda name: shoot(page, name, OF_TUTORIAL[name])).follow(TUTORIAL)
+
+
+def shoot(page: Page, name: str, height: int) -> None:
+    """Take a picture of the top of what is right of the rail."""
     page.evaluate(SETTLED)
     page.wait_for_timeout(600)  # what the editor asks once its text is there
     top, left = (page.locator(part).first.bounding_box() for part in (".topbar", "main"))
     assert top and left
-    clip = {"x": left["x"], "y": top["height"], "width": left["width"], "height": picture.height}
-    path = IMAGES / f"{picture.name}.png"
+    clip = {"x": left["x"], "y": top["height"], "width": left["width"], "height": height}
+    path = IMAGES / f"{name}.png"
     page.screenshot(path=path, clip=clip)
     size = path.stat().st_size
     print(f"{path.name}: {size // 1000} kB")
@@ -88,7 +112,9 @@ def main() -> None:
     parser.add_argument("--world", default="household")
     parser.add_argument("--only", default="", help="names of pictures, comma-separated")
     args = parser.parse_args()
-    chosen = args.only.split(",") if args.only else [each.name for each in PICTURES]
+    chosen = (
+        args.only.split(",") if args.only else [*OF_TUTORIAL, *(each.name for each in PICTURES)]
+    )
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         page = browser.new_context(**WIDE_LIGHT.options).new_page()
@@ -97,6 +123,8 @@ def main() -> None:
         for each in PICTURES:
             if each.name in chosen:
                 take(page, args.url, args.world, each)
+        if not OF_TUTORIAL.keys().isdisjoint(chosen):
+            follow_tutorial(page, args.url)
         browser.close()
 
 

@@ -54,7 +54,7 @@ from annotations.language.plans.task_plan import (
     task_plan_schema,
 )
 from annotations.language.plans.values import ids_in, renumbered, with_results
-from annotations.language.texts import Refusal
+from annotations.language.texts import Refusal, definite
 
 MOST_COMMANDS = 3
 MOST_STATES = 20_000  # about half a second; longer commands are done one after the other
@@ -399,7 +399,7 @@ def _notes_about_the_walk(
     place = ending[-1].place if ending else None
     message = "The recipe book does not say where the robot goes after all commands."
     if place is not None:
-        where = "back to you" if isinstance(place, Operator) else f"to the {_name(place)}"
+        where = "back to you" if isinstance(place, Operator) else f"to {definite(_name(place))}"
         message = f"After all commands the robot goes {where}; the walk counts that way."
     yield Note(NoteKind.WAY_BACK, tuple(commands), message)
     message = f"The walk is in {distances.measure}, as the table of distances has it."
@@ -903,7 +903,7 @@ class _Writer:
         numbers = tuple(sorted(commands))
         steps = tuple(dict.fromkeys(each.first for each in stay))
         who = _say_commands(numbers)
-        message = f"The {_name(place)} is visited once for {who}."
+        message = f"{_capital(definite(_name(place)))} is visited once for {who}."
         if isinstance(place, Operator):
             message = f"The robot comes back to you once for {who}."
         yield Interleaving(Reason.SHARED_VISIT, numbers, steps, message)
@@ -914,7 +914,7 @@ def _same_room(one: _Stop, other: _Stop) -> Iterator[Interleaving]:
     room = _room(one.place)
     if len(commands) > 1 and room and room == _room(other.place):
         message = (
-            f"The {_name(one.place)} and the {_name(other.place)} are in one room, so "
+            f"{_capital(definite(_name(one.place)))} and {definite(_name(other.place))} are in one room, so "
             f"{_say_commands(commands)} follow each other there."
         )
         yield Interleaving(Reason.SAME_ROOM, commands, (one.first, other.first), message)
@@ -951,6 +951,10 @@ def _name(place: Place) -> str:
         return OPERATOR_WORD
     text = "" if isinstance(place, Somewhere) else str(place.as_json().get("text", ""))
     return text.removeprefix("the ")
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _room(place: Place) -> str:

@@ -59,7 +59,7 @@ from annotations.language.plans.plan import (
 )
 from annotations.language.plans.rows import OPERATOR_WORD
 from annotations.language.plans.unresolved import COMMAND, Gaps, said_words
-from annotations.language.texts import ARGUMENT_NAMES, NEEDED_ARGUMENTS
+from annotations.language.texts import ARGUMENT_NAMES, NEEDED_ARGUMENTS, definite
 from annotations.language.world import (
     ArgumentKind,
     Ontology,
@@ -349,7 +349,7 @@ class _Planner:
         value, is_missing = self.lookup.value(text, predicate, place)
         if is_missing and (places := self.lookup.places_called(text)):
             message = f"“{text}” can be several places"
-            *others, last = (f"the {each.text}" for each in places)
+            *others, last = (definite(each.text) for each in places)
             choices = f"{', '.join(others)} or {last}"
             self.waiting.append((Trouble.AMBIGUOUS, message, "name one, or answer the question"))
             question, entity_class = f"Which one do you mean: {choices}?", places[0].entity_class

@@ -29,7 +29,7 @@ from annotations.language.plans.plan import (
 from annotations.language.plans.rows import PLACEHOLDER, EffectKind, Primitive
 from annotations.language.plans.task_plan import TaskPlan, TaskStep
 from annotations.language.plans.values import PLACE, content, kinds_of
-from annotations.language.texts import article, looks_plural, plural
+from annotations.language.texts import article, definite, looks_plural, plural
 
 YOU = "you"
 THE = "the "
@@ -323,7 +323,7 @@ def _noun_phrase(value: TaskValue | None, is_new: bool, is_plural: bool) -> str:
         return value.text if value.is_of_robot else _turned(value.text)
     if isinstance(value, Named):
         if kind_of_class(value.entity_class) not in ("", PERSON) or PLACE in kinds_of(value):
-            return f"the {value.text}"
+            return definite(value.text)
         if value.text.endswith("?"):
             return f"the question “{value.text}”"
         return _turned(value.text)

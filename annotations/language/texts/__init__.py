@@ -32,6 +32,7 @@ from annotations.language.texts.errors import (
 )
 from annotations.language.texts.inflection import (
     article,
+    definite,
     looks_plural,
     plural,
     say_count,

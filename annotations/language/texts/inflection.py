@@ -15,6 +15,7 @@ from annotations.language.texts.word_lists import (
     NO_ENDINGS,
     NOUNS_IN_I_OR_U,
     NOUNS_IN_IE,
+    NUMBERS,
     PLURALS,
     SINGULARS_IN_S,
     UNCHANGING,
@@ -78,6 +79,13 @@ def article(noun: str) -> str:
     if len(first) <= _LONGEST_ABBREVIATION and first.isupper() and first[1:]:
         return "an" if first.startswith((*LETTERS_AFTER_AN, *"AEIO")) else "a"
     return "an" if begin.startswith(_VOWELS) else "a"
+
+
+def definite(noun: str) -> str:
+    """Return a noun phrase behind ``the``; ``bed two`` and ``shelf 3`` are names, and stay alone."""
+    before, _, last = noun.rpartition(" ")
+    is_numbered = bool(before) and (last.isdigit() or last.lower() in NUMBERS)
+    return noun if is_numbered else f"the {noun}"
 
 
 def say_count(count: int, noun: str) -> str:

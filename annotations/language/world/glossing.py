@@ -24,7 +24,7 @@ from annotations.language.forms import (
     to_reading,
     walk,
 )
-from annotations.language.texts import NUMBERS, RELATIONS, article, looks_plural, plural
+from annotations.language.texts import NUMBERS, RELATIONS, article, definite, looks_plural, plural
 from annotations.language.world.gloss_patterns import (
     SUPERLATIVES,
     GlossAlternative,
@@ -276,7 +276,7 @@ def _phrase(form: Form, scope: Scope, is_plural: bool = False) -> str:
         return form.word
     said = _bare(form, scope)
     is_named = argument_kind(form) == ArgumentKind.TEXT and said[:1].isupper()
-    return said if is_named or argument_kind(form) == ArgumentKind.NUMBER else f"the {said}"
+    return said if is_named or argument_kind(form) == ArgumentKind.NUMBER else definite(said)
 
 
 def _bare(form: Form, scope: Scope) -> str:

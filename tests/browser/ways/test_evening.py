@@ -91,7 +91,7 @@ def load_world(evening: Evening) -> None:
     page = evening.page
     evening.go("/", "Worlds")
     evening.look("01-worlds")
-    page.click("text=Create a world")
+    page.click("main >> text=New world")
     arrive(page, "New world")
     page.fill("#id_name", "robocup")
     page.check("text=competition")

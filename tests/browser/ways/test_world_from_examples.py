@@ -88,7 +88,7 @@ def test_a_greenhouse_is_made_by_keys(superuser, logged_in, live_server, parse_s
     page.keyboard.press("Control+Shift+z")
     expect(lines).to_have_value(re.compile("= water"))
 
-    tab_to(page, page.get_by_label("A command"))
+    tab_to(page, page.get_by_role("textbox", name="Try it"))
     page.keyboard.type(UNSEEN)
     page.keyboard.press("Enter")
     expect(page.locator("#tried figure")).to_contain_text("bed three")

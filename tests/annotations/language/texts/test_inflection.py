@@ -12,7 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
-from annotations.language.texts import article, looks_plural, plural, say_count, singular, spellings
+from annotations.language.texts import (
+    article,
+    definite,
+    looks_plural,
+    plural,
+    say_count,
+    singular,
+    spellings,
+)
 from annotations.language.texts.word_lists import NOUNS_IN_IE, PLURALS, SINGULARS_IN_S, UNCHANGING
 
 # What names an object, a location or a class in the files of generators and competitions.
@@ -110,6 +118,16 @@ def test_a_count_is_said_with_its_noun() -> None:
 )
 def test_the_article_of_a_noun_phrase(noun: str, expected: str) -> None:
     assert article(noun) == expected
+
+
+@pytest.mark.parametrize("noun", ["bed two", "shelf 3", "Gate Ten"])
+def test_what_ends_with_its_number_is_a_name_without_an_article(noun: str) -> None:
+    assert definite(noun) == noun
+
+
+@pytest.mark.parametrize("noun", ["tomatoes", "first bed", "two", "7", "bed b"])
+def test_other_nouns_have_their_article(noun: str) -> None:
+    assert definite(noun) == f"the {noun}"
 
 
 @pytest.mark.parametrize(

@@ -216,6 +216,16 @@ def test_how_sure_an_answer_is_stands_in_words_with_one_figure(decision, probabi
     assert shown.count("%") == (probability is not None)
 
 
+def test_an_answer_whose_plan_no_robot_can_carry_out_is_not_shown_as_one_to_act_on():
+    answer = {"decision": "act", "probability": 0.99, "sureness": "sure"}
+    tones = []
+    for is_executable in (True, False):
+        answer["candidates"] = [{"task_plan": {"is_executable": is_executable}}]
+        shown = render_to_string("parser_service/_sureness.html", {"answer": answer})
+        tones += re.findall('data-decision="(.*?)"', shown)
+    assert tones == ["act", "ask"]
+
+
 def test_the_plan_of_an_answer_stands_beside_how_sure_it_is(answering, anna):
     page = asked(anna, "bring me the red cup")
     assert (
