@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ROOMS = ("annotations", "parser_service", "gpsr_site")
-OPTIONAL = {"django-allauth", "mlflow-skinny"}  # the extras [sso] and [tracking]
+OPTIONAL = {"django-allauth", "h5py", "mlflow-skinny", "pyarrow"}  # of the extras
 
 
 def normal(name: str) -> str:

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any
 
 from annotations.exchange.pipe import Pipe
+from annotations.language.texts import require_package
 from annotations.rows.synchronise import batches
 
 CHUNK = 2_000  # rows fetched, and sent, at once
@@ -37,11 +38,14 @@ def table_pieces(
         as_: a ``TableFormat``.
         types: of the fields that are no texts in Parquet, as pyarrow calls them.
         manifest: what the metadata of a Parquet file holds as JSON.
+
+    Raises Refusal where Parquet is asked for and pyarrow is not installed.
     """
     match TableFormat(as_):
         case TableFormat.CSV:
             return _csv_pieces(rows, fields)
         case TableFormat.PARQUET:
+            require_package("pyarrow", "parquet")
             of_all = dict.fromkeys(fields, "string") | (types or {})
             return _parquet_pieces(rows, of_all, manifest or {})
     encode = json.JSONEncoder(ensure_ascii=False).encode

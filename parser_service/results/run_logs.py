@@ -10,7 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from annotations.language.texts import Refusal
+from annotations.language.texts import Refusal, require_package
 from parser_service.models import TrainingRun
 from parser_service.results.run_figures import report_run
 
@@ -49,15 +49,8 @@ def export_runs(runs: Sequence[TrainingRun], as_: str, target: str) -> list[str]
         Refusal: the package is absent, or a run is there already.
         OSError: the folder cannot be written.
     """
-    try:
-        return (_to_mlflow if as_ == LogFormat.MLFLOW else _to_tensorboard)(runs, target)
-    except ImportError as error:
-        package = "mlflow-skinny" if as_ == LogFormat.MLFLOW else LogFormat.TENSORBOARD
-        sentence = (
-            f"The package {package} is not installed. Install it beside the workbench: "
-            "pip install 'gpsr-workbench[tracking]'."
-        )
-        raise Refusal(sentence, "package_absent") from error
+    require_package("mlflow" if as_ == LogFormat.MLFLOW else "tensorboard", "tracking")
+    return (_to_mlflow if as_ == LogFormat.MLFLOW else _to_tensorboard)(runs, target)
 
 
 def figures_of(run: TrainingRun) -> Iterator[Figure]:

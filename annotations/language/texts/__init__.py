@@ -28,6 +28,7 @@ from annotations.language.texts.errors import (
     Severity,
     TextEdit,
     error_at,
+    require_package,
     warning_at,
 )
 from annotations.language.texts.inflection import (

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from http import HTTPStatus
+from importlib.util import find_spec
 from typing import Any
 
 EXCERPT_WIDTH = 78  # characters of a line that are shown around a problem
@@ -155,6 +156,17 @@ class Refusal(ValueError):
 
     def __str__(self) -> str:
         return self.message
+
+
+def require_package(name: str, extra: str) -> None:
+    """Raise Refusal where the package ``name``, which the ``extra`` of this project brings, is not installed."""
+    if find_spec(name) is None:
+        raise Refusal(
+            f"This needs the package {name}, which is not installed here. Install it beside the workbench: "
+            f"pip install 'gpsr-workbench[{extra}]'.",
+            "package_absent",
+            HTTPStatus.NOT_IMPLEMENTED,
+        )
 
 
 @dataclass

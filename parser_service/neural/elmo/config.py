@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from annotations.language.texts import Refusal
+from annotations.language.texts import Refusal, require_package
 from parser_service.parsers.hyperparameters.fields import hyperparameter, refuse_empty
 from parser_service.parsers.hyperparameters.vectors import GloveConfig
 from parser_service.parsers.pretrained_files import folders_of_names, inside
@@ -31,8 +31,9 @@ def find_elmo(name: str, encoders: Path | None = None, anywhere: bool = True) ->
     """Return the files of the ELMo in the folder ``name``: inside ``encoders`` or, ``anywhere``, under
     any other path.
 
-    Raises Refusal, a sentence that says what to put where.
+    Raises Refusal, a sentence that says what to put where, or to install.
     """
+    require_package("h5py", "elmo")
     for folder in folders_of_names(encoders, anywhere):
         options = sorted((folder / name).glob(f"*{OPTIONS_ENDING}"))
         weights = sorted((folder / name).glob(f"*{WEIGHTS_ENDING}"))

@@ -97,11 +97,9 @@ def test_a_run_is_written_once(run, tmp_path, to, package):
         export(run, to, tmp_path / "logs")
 
 
-@pytest.mark.parametrize(
-    ("to", "module"), [("mlflow", "mlflow"), ("tensorboard", "torch.utils.tensorboard")]
-)
-def test_an_absent_package_is_named(run, tmp_path, monkeypatch, to, module):
-    monkeypatch.setitem(sys.modules, module, None)
+@pytest.mark.parametrize("to", ["mlflow", "tensorboard"])
+def test_an_absent_package_is_named(run, tmp_path, monkeypatch, to):
+    monkeypatch.setitem(sys.modules, to, None)
     with pytest.raises(CommandError, match=r"gpsr-workbench\[tracking\]"):
         export(run, to, tmp_path / "logs")
     assert not (tmp_path / "logs").exists()

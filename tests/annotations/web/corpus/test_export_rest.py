@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import sys
 import zipfile
 from datetime import timedelta
 
@@ -74,6 +75,14 @@ def test_parquet_holds_the_rows_and_the_manifest(caller, split, annotator):
     assert manifest["code_version"].startswith("0.")
     part = caller(f"{path}?part=train", annotator).json()
     assert (part["examples"], part["chosen"]) == (2, {"part": "train"})
+
+
+def test_parquet_without_its_package_is_refused(caller, split, annotator, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    response = caller(url_of(split, "?as=parquet"), annotator)
+    assert (response.status_code, response.json()["code"]) == (501, "package_absent")
+    assert "gpsr-workbench[parquet]" in response.json()["detail"]
+    assert text_of(caller(url_of(split, "?as=csv"), annotator))
 
 
 def test_an_archive_of_pair_files_comes_back_byte_for_byte(caller, tiny_world, admin, client):

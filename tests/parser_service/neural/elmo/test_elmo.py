@@ -1,4 +1,5 @@
 import json
+import sys
 
 import h5py
 import numpy
@@ -6,6 +7,7 @@ import pytest
 import torch
 
 from annotations.language.texts.errors import Refusal
+from parser_service.neural.elmo.config import find_elmo
 from parser_service.neural.elmo.encoder import Elmo
 from parser_service.neural.elmo.files import read_elmo_options
 from parser_service.neural.elmo.layers import spell
@@ -19,6 +21,14 @@ OPTIONS, WEIGHTS = "tiny_options.json", "tiny_weights.hdf5"
 @pytest.fixture
 def folder(tmp_path):
     return write_elmo(tmp_path / "elmo")
+
+
+def test_without_its_package_its_files_are_refused(folder, monkeypatch):
+    assert find_elmo("elmo", folder.parent).options == folder / OPTIONS
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(Refusal) as refused:
+        find_elmo("elmo", folder.parent)
+    assert refused.value.code == "package_absent"
 
 
 def load(folder):
