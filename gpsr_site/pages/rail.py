@@ -1,4 +1,4 @@
-"""The pages of a world in the order of the flow: groups of the rail, their entries, the tabs of an entry, and theirs."""
+"""The pages of a world in the order of the flow: groups of the rail, their entries, and two rows of tabs."""
 
 from __future__ import annotations
 

@@ -128,8 +128,9 @@ CUT_CHOICES = """() => {
 # Tables that go on beyond the screen on which they are read.
 CUT_TABLES = """() => [...document.querySelectorAll("main .table-wrap")]
   .filter((each) => each.checkVisibility())
-  .filter((each) => each.querySelector("table").offsetWidth > each.clientWidth + 1)
-  .map((each) => `${each.querySelector("table").offsetWidth - each.clientWidth} pixels: ${each.innerText.slice(0, 60)}`)"""
+  .map((each) => [each, each.querySelector("table").offsetWidth - each.clientWidth])
+  .filter(([, beyond]) => beyond > 1)
+  .map(([each, beyond]) => `${beyond} pixels: ${each.innerText.slice(0, 60)}`)"""
 
 # What a printed page shows though only a screen can use it.
 OF_A_SCREEN = """() => [...document.querySelectorAll(
