@@ -235,7 +235,6 @@ USE = (
     RailEntry(
         label="Parse",
         page="playground",
-        pages_below=("tryout",),
         tabs=(
             RailEntry(label="Dialogue", page="dialogues", pages_below=("dialogue",)),
             RailEntry(label="Several commands", page="joint_plan"),

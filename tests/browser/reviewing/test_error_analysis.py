@@ -45,14 +45,14 @@ def test_a_text_of_the_paper_is_one_key_away_and_its_answer_follows(
     settings.WORK_TEMPO = 10_000
     save_parser(sample.run)
     page = page_of(reviewer)
-    page.goto(f"{live_server.url}/w/home/try/?run={sample.run.pk}")
-    expect(page.locator("#tryout-answers")).to_contain_text("Type a text")
+    page.goto(f"{live_server.url}/w/home/parse/?beside={sample.run.pk}")
+    expect(page.locator("#beside-answers")).to_contain_text("Type a text")
     page.keyboard.press("4")
-    expect(page.locator("#tryout-text")).to_have_value("Bring an umbrella to me")
-    expect(page.locator("#tryout-answers")).to_contain_text("waiting for the answer")
+    expect(page.locator("#playground-text")).to_have_value("Bring an umbrella to me")
+    expect(page.locator("#beside-answers")).to_contain_text("waiting for the answer")
     expect(page).to_have_url(re.compile(r"text=Bring\+an\+umbrella\+to\+me"))
     wait_for(lambda: answer_jobs(sample.world).exists(), "the job is asked for")
     done(answer_jobs(sample.world).get())
-    expect(page.locator("#tryout-answers .lf").first).to_be_visible()
+    expect(page.locator("#beside-answers .lf").first).to_be_visible()
     assert Tryout.objects.get().is_answered
     assert Job.objects.filter(kind=JobKind.ANSWER).count() == 1
