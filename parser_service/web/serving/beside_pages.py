@@ -20,7 +20,7 @@ from annotations.showing.paging import number_in
 from parser_service.models import TrainingRun, Tryout
 from parser_service.reviews.tryout_answers import MOST_TEXT, ask, request_answers
 from parser_service.serving.default_runs import opening_run
-from parser_service.web.results.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
+from parser_service.web.runs.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
 
 MOST_OFFERED = 30
 USUAL = "usual"

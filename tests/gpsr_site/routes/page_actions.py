@@ -261,6 +261,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "predictions": "get predictions, get candidates",
     "review": "get predictions, get answer-review",
     **dict.fromkeys(("playground", "joint_plan"), CHOICES),
+    "tryout": NoRoute("An old address, which leads to Parse."),
     **dict.fromkeys(("promotions", "parser_state"), "get promotion-list"),
     "offered_entities": "get offered-entity-list",
     "plan_schema": NoRoute("The page is the file itself, for programs."),

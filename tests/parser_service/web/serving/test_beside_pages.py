@@ -9,6 +9,7 @@ from parser_service.models import Tryout
 from parser_service.reviews.tryout_answers import MOST_TEXT, answer_jobs
 from parser_service.runs.promoting import promote
 from parser_service.templatetags.provenance import cut_in_words
+from tests.annotations.conftest import import_tiny
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.reviews.analyses.conftest import done, home, train_one  # noqa: F401
 from tests.parser_service.reviews.analyses.made_parsers import DEFAULT
@@ -35,6 +36,7 @@ def test_an_old_address_leads_to_the_same_runs(sample, anna):
 
 
 def test_without_a_trained_parser_the_page_says_so(world, anna, adam):
+    import_tiny(world)
     for client, is_offered in ((anna, False), (adam, True)):
         page = client.get("/w/home/parse/?beside=usual").content.decode()
         assert '<div class="empty">' in page
