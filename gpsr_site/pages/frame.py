@@ -7,6 +7,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from django.conf import settings
+from django.contrib.auth.models import AnonymousUser
 from django.http import HttpRequest
 from django.urls import reverse
 from django.utils.functional import SimpleLazyObject
@@ -108,8 +109,9 @@ def _last_world(request: HttpRequest) -> World | None:
     return World.objects.visible_to(request.user).filter(name=name).first() if name else None
 
 
-def _rail_of_last(world: World, user: User) -> list[RailGroup]:
-    return _rail(world, counts_of(world), world.duties_of(user), ())
+def _rail_of_last(world: World, user: User | AnonymousUser) -> list[RailGroup]:
+    duties = world.duties_of(user) if user.is_authenticated else frozenset()
+    return _rail(world, counts_of(world), duties, ())
 
 
 def _way_of(request: HttpRequest) -> tuple[str, tuple[RailEntry, ...]]:

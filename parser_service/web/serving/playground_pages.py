@@ -60,6 +60,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
         "page_keys": KEYS,
+        "asks_beside": bool(text and shown.get("chosen_beside")),
         **shown,
         **_asking(world),
     }
