@@ -50,9 +50,10 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
     runs = world.runs.succeeded().select_related("split").order_by("-pk")[:MOST_OFFERED]
     others = [each for each in runs if each != promoted]
     opening = None if parts else opening_run(world)
+    example = shown.get("example")
+    text = text_of(request.GET) or (example.utterance if example else "")
     context = {
-        "text": text_of(request.GET)
-        or (shown["example"].utterance if shown.get("example") else ""),
+        "text": text,
         "parts": parts,
         "has_templates": ready_templates(world).exists(),
         "runs": [promoted, *others] if promoted else others,
