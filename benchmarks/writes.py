@@ -138,7 +138,7 @@ def sent_to(sample: Any) -> dict[str, dict[str, Any]]:
         "run_new": {"split": sample.split.pk, "parser": "knn"},
         "joint_plan_ask": together,
         "playground_ask": said,
-        "tryout_ask": {**said, "run": sample.run.pk},
+        "beside_ask": {**said, "beside": sample.run.pk},
     }
 
 

@@ -17,11 +17,11 @@ from parser_service.web.results import (
     result_pages,
     sensitivity_pages,
     slice_pages,
-    tryout_pages,
 )
 from parser_service.web.reviews import error_category_pages, prediction_pages, review_pages
 from parser_service.web.runs import learning_curve_pages, new_run_pages, run_pages
 from parser_service.web.serving import (
+    beside_pages,
     dialogue_pages,
     joint_pages,
     playground_pages,
@@ -99,8 +99,8 @@ urlpatterns = [
     path(
         "promotion/<int:pk>/decline/", promotion_pages.promotion_decline, name="promotion_decline"
     ),
-    path("try/", tryout_pages.tryout, name="tryout"),
-    path("try/ask/", tryout_pages.tryout_ask, name="tryout_ask"),
+    path("try/", beside_pages.tryout, name="tryout"),
+    path("parse/beside/", beside_pages.beside_ask, name="beside_ask"),
     path("review/", review_pages.review, name="review"),
     path("review/<int:pk>/tag/", review_pages.review_tag, name="review_tag"),
     path("review/<int:pk>/note/", review_pages.review_note, name="review_note"),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 from urllib.parse import unquote
 
 from django.conf import settings
+from django.contrib.auth.models import AnonymousUser
 from django.http import HttpRequest
 from django.urls import reverse
 from django.utils.functional import SimpleLazyObject
@@ -77,10 +77,11 @@ def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
     can = {duty.value: duty in duties for duty in Duty}
     if world is None:
         last: Any = SimpleLazyObject(lambda: _last_world(request))
-        rail = SimpleLazyObject(lambda: _rail(last, counts_of(last), ()) if last else [])
+        rail = SimpleLazyObject(lambda: _rail_of_last(last, request.user) if last else [])
+        nothing: dict[str, Any] = {key: [] for key in ("tabs", "views", "trail")}
         return {
             **{"world": None, "rail_world": last, "can": can, "rail": rail},
-            **{"tabs": [], "trail": [], "page_name": ""},
+            **{**nothing, "page_name": ""},
         }
     # One count for the rail and the tabs, once one of them is drawn.
     counts: Any = SimpleLazyObject(lambda: getattr(request, "counts", None) or counts_of(world))
@@ -90,9 +91,14 @@ def _frame_of_world(request: HttpRequest) -> dict[str, Any]:
         "world": world,
         "rail_world": world,
         "can": can,
-        "rail": SimpleLazyObject(lambda: _rail(world, counts, way)),
-        "tabs": SimpleLazyObject(lambda: list(_tabs(world, counts, duties, way)) if here else []),
-        "trail": [Crumb(entry.label, _url_of(world, entry)) for entry in way if entry is not here],
+        "rail": SimpleLazyObject(lambda: _rail(world, counts, duties, way)),
+        "tabs": SimpleLazyObject(lambda: _tabs(world, counts, duties, way[:2]) if here else []),
+        "views": SimpleLazyObject(lambda: _tabs(world, counts, duties, way[1:]) if here else []),
+        "trail": [
+            Crumb(entry.label, _url_of(world, entry.page_for(duties)))
+            for entry in way
+            if entry is not here
+        ],
         "page_name": way[-1].label if way else "",
     }
 
@@ -101,6 +107,11 @@ def _last_world(request: HttpRequest) -> World | None:
     """Return the world that the reader saw last; None where there is none, or they may no longer see it."""
     name = request.COOKIES.get(LAST_WORLD)
     return World.objects.visible_to(request.user).filter(name=name).first() if name else None
+
+
+def _rail_of_last(world: World, user: User | AnonymousUser) -> list[RailGroup]:
+    duties = world.duties_of(user) if user.is_authenticated else frozenset()
+    return _rail(world, counts_of(world), duties, ())
 
 
 def _way_of(request: HttpRequest) -> tuple[str, tuple[RailEntry, ...]]:
@@ -112,10 +123,13 @@ def _way_of(request: HttpRequest) -> tuple[str, tuple[RailEntry, ...]]:
     return match.url_name, way_to(match.kwargs.get("kind", match.url_name))
 
 
-def _rail(world: World, counts: Counts, way: tuple[RailEntry, ...]) -> list[RailGroup]:
+def _rail(
+    world: World, counts: Counts, duties: frozenset[Duty], way: tuple[RailEntry, ...]
+) -> list[RailGroup]:
     return [
         RailGroup(
-            group.heading, [_link(entry, world, counts, entry in way) for entry in group.entries]
+            group.heading,
+            [_link(entry, world, counts, duties, entry in way) for entry in group.entries],
         )
         for group in GROUPS
     ]
@@ -123,26 +137,28 @@ def _rail(world: World, counts: Counts, way: tuple[RailEntry, ...]) -> list[Rail
 
 def _tabs(
     world: World, counts: Counts, duties: frozenset[Duty], way: tuple[RailEntry, ...]
-) -> Iterator[RailLink]:
-    """Yield the tabs of an entry. A entry whose page bears its name is the first of them."""
+) -> list[RailLink]:
+    """Return the tabs of the first entry of ``way``, of which the last is current. An entry whose page bears its
+    name is the first of them; one without tabs has no row."""
+    if not way:
+        return []
     entry, here = way[0], way[-1]
     tabs = [tab for tab in entry.tabs if tab.duty in duties]
-    if tabs and entry.has_page:
-        yield _link(entry, world, counts, here is entry, is_tab=True)
-    for tab in tabs:
-        yield _link(tab, world, counts, here is tab)
+    if tabs and entry.has_page and entry.duty in duties:
+        # What waits on the entry's own page alone.
+        tabs.insert(0, replace(entry, tabs=()))
+    return [_link(tab, world, counts, duties, tab.page == here.page) for tab in tabs]
 
 
 def _link(
-    entry: RailEntry, world: World, counts: Counts, is_current: bool, is_tab: bool = False
+    entry: RailEntry, world: World, counts: Counts, duties: frozenset[Duty], is_current: bool
 ) -> RailLink:
-    waiting = entry.waiting_here if is_tab else entry.sentence
     minutes = int(counts.age / 60) if entry.count in LARGE else 0
     return RailLink(
         label=entry.label,
-        url=_url_of(world, entry),
+        url=_url_of(world, entry.page_for(duties)),
         count=getattr(counts, entry.count) if entry.count else None,
-        dot=waiting(counts),
+        dot=entry.sentence(counts),
         is_current=is_current,
         counted=f"counted {say_count(minutes, 'minute')} ago" if minutes else "",
     )

@@ -1,4 +1,4 @@
-"""The pages of a world in the order of the flow: groups of the rail, their entries, and the tabs of an entry."""
+"""The pages of a world in the order of the flow: groups of the rail, their entries, and two rows of tabs."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class RailEntry:
 
     ``label`` is its one name: in the rail or on its tab, as its heading, in the breadcrumb and as its title.
     ``page`` and ``pages_below`` are URL names; the pages below have names of their own. Those of the rows of a kind
-    are below its list, and are not named. The first tab of an entry with tabs is the entry itself. ``query`` is the
-    filter with which its tab opens. ``count`` is a field of ``Counts`` that stands beside the label. Only people with
-    ``duty`` see the tab.
+    are below its list, and are not named. The first tab of an entry with tabs is the entry itself; the tabs of a tab
+    are a second row. ``query`` is the filter with which its tab opens. ``count`` is a field of ``Counts`` that stands
+    beside the label. Only people with ``duty`` see the tab; the rail leads others to the first tab that they may open.
     """
 
     label: str
@@ -62,14 +62,17 @@ class RailEntry:
                 return (self, *way)
         return (self,) if page in (self.page, *self.pages_below) else ()
 
-    def waiting_here(self, counts: Counts) -> str:
-        """Say what waits on this page; empty for nothing."""
-        return self.waiting.sentence(counts) if self.waiting else ""
+    def page_for(self, duties: frozenset[Duty]) -> RailEntry:
+        """Return the entry itself, or the first of its tabs, whichever a person with ``duties`` may open first."""
+        if self.duty in duties:
+            return self
+        return next((tab for tab in self.tabs if tab.duty in duties), self)
 
     def sentence(self, counts: Counts) -> str:
         """Say what waits here and on the tabs; empty for nothing."""
+        here = self.waiting.sentence(counts) if self.waiting else ""
         below = (tab.sentence(counts) for tab in self.tabs)
-        return ", ".join(filter(None, (self.waiting_here(counts), *below)))
+        return ", ".join(filter(None, (here, *below)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,18 +108,19 @@ DESCRIBE = (
         page="templates",
         count="templates",
         waiting=Waiting(count="templates_waiting", noun="template", reason="not ready"),
-        tabs=(RailEntry(label="By example", page="by_example", duty=Duty.ANNOTATE),),
-    ),
-    RailEntry(
-        label="Coverage",
-        page="uncovered",
         tabs=(
-            RailEntry(label="Templates without effect", page="unmatched"),
-            RailEntry(label="Conflicts", page="conflicts"),
-            RailEntry(label="Outside the grammar", page="outside_grammar"),
+            RailEntry(label="By example", page="by_example", duty=Duty.ANNOTATE),
+            RailEntry(
+                label="Coverage",
+                page="uncovered",
+                tabs=(
+                    RailEntry(label="Templates without effect", page="unmatched"),
+                    RailEntry(label="Conflicts", page="conflicts"),
+                    RailEntry(label="Outside the grammar", page="outside_grammar"),
+                ),
+            ),
         ),
     ),
-    RailEntry(label="Recipes", page="recipes"),
 )
 
 COLLECT = (
@@ -153,35 +157,52 @@ COLLECT = (
                 waiting=Waiting(count="paraphrases_waiting", noun="paraphrase", reason="to judge"),
                 pages_below=("submission", "submission_decide"),
             ),
-            RailEntry(label="Figures", page="paraphrase_figures"),
-            RailEntry(label="Figures by form", page="paraphrase_forms"),
-            RailEntry(label="Contributors", page="paraphrase_contributors", duty=Duty.REVIEW),
+            RailEntry(
+                label="Figures",
+                page="paraphrase_figures",
+                tabs=(
+                    RailEntry(label="Figures by form", page="paraphrase_forms"),
+                    RailEntry(
+                        label="Contributors", page="paraphrase_contributors", duty=Duty.REVIEW
+                    ),
+                ),
+            ),
         ),
     ),
     RailEntry(
-        label="Utterances",
-        page="utterances",
-        count="utterances",
-        waiting=Waiting(
-            count="utterances_waiting",
-            noun="utterance",
-            reason="without a form, not waiting in the queue",
-        ),
-        pages_below=("utterances_new", "utterances_delete"),
-        tabs=(RailEntry(label="Uploads", page="uploads", pages_below=("upload", "upload_undo")),),
-    ),
-    RailEntry(
-        label="Queue",
-        page="queue",
+        label="Label",
+        page="label",
+        duty=Duty.ANNOTATE,
         count="work_items",
-        waiting=Waiting(count="work_items_free", noun="item", reason="to do"),
-        pages_below=("queue_item", "label"),
         tabs=(
+            RailEntry(
+                label="Queue",
+                page="queue",
+                waiting=Waiting(count="work_items_free", noun="item", reason="to do"),
+                pages_below=("queue_item",),
+                tabs=(
+                    RailEntry(label="Agreement", page="agreement"),
+                    RailEntry(label="Progress", page="progress"),
+                    RailEntry(label="Double labelling", page="queue_settings", duty=Duty.MANAGE),
+                ),
+            ),
+            RailEntry(
+                label="Utterances",
+                page="utterances",
+                waiting=Waiting(
+                    count="utterances_waiting",
+                    noun="utterance",
+                    reason="without a form, not waiting in the queue",
+                ),
+                pages_below=("utterances_new", "utterances_delete"),
+                tabs=(
+                    RailEntry(
+                        label="Uploads", page="uploads", pages_below=("upload", "upload_undo")
+                    ),
+                ),
+            ),
             RailEntry(label="Label audit", page="audit"),
-            RailEntry(label="Agreement", page="agreement"),
-            RailEntry(label="Progress", page="progress"),
             RailEntry(label="Guidelines", page="guidelines"),
-            RailEntry(label="Double labelling", page="queue_settings", duty=Duty.MANAGE),
         ),
     ),
 )
@@ -196,15 +217,6 @@ TRAIN_AND_JUDGE = (
         count="runs",
         waiting=Waiting(count="runs_active", noun="run", reason="queued or running"),
         pages_below=("run", "run_new", "predictions", "defaults", "sensitivity", "probes"),
-        tabs=(
-            RailEntry(
-                label="Promotion",
-                page="promotions",
-                waiting=Waiting(
-                    count="promotions_proposed", noun="run", reason="proposed for promotion"
-                ),
-            ),
-        ),
     ),
     RailEntry(
         label="Results",
@@ -224,10 +236,22 @@ USE = (
         label="Parse",
         page="playground",
         tabs=(
-            RailEntry(label="Try a text", page="tryout"),
             RailEntry(label="Dialogue", page="dialogues", pages_below=("dialogue",)),
             RailEntry(label="Several commands", page="joint_plan"),
-            RailEntry(label="Robot", page="robot"),
+        ),
+    ),
+    RailEntry(
+        label="Robot",
+        page="robot",
+        tabs=(
+            RailEntry(label="Recipes", page="recipes"),
+            RailEntry(
+                label="Promotion",
+                page="promotions",
+                waiting=Waiting(
+                    count="promotions_proposed", noun="run", reason="proposed for promotion"
+                ),
+            ),
         ),
     ),
 )

@@ -47,6 +47,12 @@ class AnsweringParts:
     def in_words(self) -> str:
         return ", then ".join(self.titles)
 
+    @property
+    def in_short(self) -> str:
+        """The parts with the runs by their numbers alone, for a field of one line."""
+        oracle = (title_of(ORACLE),) if self.has_oracle else ()
+        return ", then ".join((*oracle, *(f"run {each.pk}" for each in self.runs)))
+
 
 def answering_parts(world: World) -> AnsweringParts:
     """Return the parts that answer in ``world`` now; none where it has neither templates nor a promoted run."""

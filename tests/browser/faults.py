@@ -90,6 +90,48 @@ CUT = """() => [...document.querySelectorAll(".card, .option-card, .flow-noun")]
   .filter((element) => element.scrollWidth > element.clientWidth + 1)
   .map((element) => element.outerHTML.slice(0, 80))"""
 
+# Steps of the breadcrumb that are shortened, or left out where there are no two rows, beside room for them.
+CRUMBS = """() => {
+  const list = document.querySelector(".breadcrumb ol");
+  if (!list) return [];
+  const steps = [...list.children];
+  const right = Math.max(...steps.map((each) => each.getBoundingClientRect().right));
+  const room = list.getBoundingClientRect().right - right;
+  return steps
+    .filter((each) => each.scrollWidth > each.clientWidth + 1 || (innerWidth >= 800 && !each.checkVisibility()))
+    .filter(() => room > 8)
+    .map((each) => `${each.textContent.trim()}: ${room} pixels are free`);
+}"""
+# What does not begin where it does on every other page: the title, and the tabs below it.
+OUT_OF_LINE = """() => {
+  const [top, title, tabs] = [".topbar", "h1", "main .tabs"].map((each) => document.querySelector(each));
+  const head = title?.closest(".page-head");
+  if (!top || !head) return [];
+  const from = document.querySelector("main").getBoundingClientRect().top;
+  const at = (element) => Math.round(element.getBoundingClientRect().top - from);
+  const gap = Math.round(tabs && head.contains(tabs) ? at(tabs) - at(title) - title.offsetHeight : 8);
+  return at(title) === (innerWidth < 800 ? 16 : 20) && gap === 8 ? [] : [`title at ${at(title)}, tabs ${gap} below`];
+}"""
+# Chosen options that their field has no room for.
+CUT_CHOICES = """() => {
+  const pen = new OffscreenCanvas(1, 1).getContext("2d");
+  return [...document.querySelectorAll("main select:not([multiple])")]
+    .filter((each) => each.checkVisibility() && each.selectedOptions.length)
+    .filter((each) => {
+      const style = getComputedStyle(each);
+      pen.font = style.font;
+      const room = each.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+      return pen.measureText(each.selectedOptions[0].text).width > room + 2;
+    })
+    .map((each) => `${each.name}: ${each.selectedOptions[0].text}`);
+}"""
+# Tables that go on beyond the screen on which they are read.
+CUT_TABLES = """() => [...document.querySelectorAll("main .table-wrap")]
+  .filter((each) => each.checkVisibility())
+  .map((each) => [each, each.querySelector("table").offsetWidth - each.clientWidth])
+  .filter(([, beyond]) => beyond > 1)
+  .map(([each, beyond]) => `${beyond} pixels: ${each.innerText.slice(0, 60)}`)"""
+
 # What a printed page shows though only a screen can use it.
 OF_A_SCREEN = """() => [...document.querySelectorAll(
     ".rail, .tabs, .topbar, .banner, .sheet-bar, .run-start, .tick, .page-head > .actions, [data-notice]")]
@@ -120,7 +162,7 @@ OF_PAPER = {
     "without a heading on paper": UNTITLED,
     "cut off on paper": CUT_ON_PAPER,
 }
-OF_WIDTH = {"beside the screen": BESIDE, "cut": CUT}
+OF_WIDTH = {"beside the screen": BESIDE, "cut": CUT, "crumbs": CRUMBS, "out of line": OUT_OF_LINE}
 OF_STRUCTURE = {
     "without a name": NAMELESS,
     "ids given twice": TWICE,
@@ -129,6 +171,7 @@ OF_STRUCTURE = {
     "stray blanks": STRAY_BLANKS,
     **OF_WIDTH,
 }
+OF_DESKTOP = {"cut choices": CUT_CHOICES, "cut tables": CUT_TABLES}
 OF_FOCUS = {"passed over by Tab": PASSED_OVER, "focus not to be seen": UNMARKED}
 
 BROKEN_RULES = """async (rules) => {
@@ -209,7 +252,11 @@ def narrow_and_dark(page: Page) -> Faults:
 def wide_and_light(page: Page) -> Faults:
     """Return the faults of a page in a wide and light window: by all rules of axe-core, and by keyboard."""
     page.evaluate(SETTLED)
-    return {**look_for(page, OF_STRUCTURE), **broken_rules(page), **focus_faults(page)}
+    return {
+        **look_for(page, {**OF_STRUCTURE, **OF_DESKTOP}),
+        **broken_rules(page),
+        **focus_faults(page),
+    }
 
 
 def in_place(page: Page) -> Faults:

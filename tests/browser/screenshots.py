@@ -73,7 +73,7 @@ PAGES = {
     "recipe-new": "recipes/new/",
     "primitive-new": "recipes/primitives/new/",
     "promotions": "promotion/",
-    "tryout": "try/?text=Bring+an+umbrella",
+    "beside": "parse/?beside=usual&text=Bring+an+umbrella",
     "review": "review/?outcome=wrong",
     "error-categories": "error-categories/",
     "search": "search/?q=the",

@@ -15,6 +15,7 @@ from annotations.models import StoredProblem, World
 from gpsr_site.overview.counts import counts_of, counts_of_all
 from gpsr_site.overview.workers import workers_now
 from gpsr_site.pages.frame import LAST_WORLD
+from gpsr_site.pages.rail import all_entries
 from parser_service.models import Promotion, Worker
 from parser_service.runs import run_requests
 
@@ -89,6 +90,10 @@ def test_the_banner_never_comes_from_a_cache(annotator, client):
     assert "no-store" in client.get("/banner/")["Cache-Control"]
 
 
+MOST_ENTRIES = 14
+MOST_TABS = 6  # in one row
+
+
 def entries_of(answer) -> dict[str, object]:
     return {entry.label: entry for group in answer.context["rail"] for entry in group.links}
 
@@ -115,20 +120,23 @@ def test_the_groups_of_the_rail_follow_the_flow(sample, annotator, client):
     groups = client.get("/w/home/").context["rail"]
     assert [(group.heading, [entry.label for entry in group.links]) for group in groups] == [
         ("", ["Overview"]),
-        ("Describe", ["Ontology", "Grammar", "Templates", "Coverage", "Recipes"]),
-        ("Collect", ["Commands", "Paraphrases", "Utterances", "Queue"]),
+        ("Describe", ["Ontology", "Grammar", "Templates"]),
+        ("Collect", ["Commands", "Paraphrases", "Label"]),
         ("Train and judge", ["Splits", "Runs", "Results", "Review"]),
-        ("Use", ["Parse"]),
+        ("Use", ["Parse", "Robot"]),
         ("", ["Settings"]),
     ]
+    assert sum(len(group.links) for group in groups) <= MOST_ENTRIES
 
 
 @pytest.mark.parametrize(
     ("path", "tabs"),
     [
         ("results/", ["Results", "Compare", "Slices", "Learning curves"]),
-        ("runs/", ["Runs", "Promotion"]),
-        ("parse/", ["Parse", "Try a text", "Dialogue", "Several commands", "Robot"]),
+        ("label/", ["Label", "Queue", "Utterances", "Label audit", "Guidelines"]),
+        ("templates/", ["Templates", "By example", "Coverage"]),
+        ("parse/", ["Parse", "Dialogue", "Several commands"]),
+        ("predicates/robot/", ["Robot", "Recipes", "Promotion"]),
         ("people/", ["People", "Import and export", "Jobs", "Audit log", "World"]),
     ],
 )
@@ -141,6 +149,41 @@ def test_what_belongs_together_is_one_place_with_tabs(path, tabs, sample, admin,
         assert [each.label for each in page.context["tabs"] if each.is_current] == [tab.label]
 
 
+@pytest.mark.parametrize(
+    ("path", "views"),
+    [
+        (
+            "coverage/",
+            ["Coverage", "Templates without effect", "Conflicts", "Outside the grammar"],
+        ),
+        ("paraphrases/figures/", ["Figures", "Figures by form", "Contributors"]),
+        ("queue/", ["Queue", "Agreement", "Progress", "Double labelling"]),
+        ("utterances/", ["Utterances", "Uploads"]),
+    ],
+)
+def test_pages_of_one_tab_are_a_second_row(path, views, sample, admin, client):
+    client.force_login(admin)
+    first = client.get(f"/w/home/{path}").context
+    assert [view.label for view in first["views"]] == views
+    for view in first["views"]:
+        page = client.get(view.url).context
+        assert [each.label for each in page["views"] if each.is_current] == [view.label]
+        assert [each.label for each in page["tabs"] if each.is_current] == [views[0]]
+
+
+def test_no_row_of_tabs_is_long():
+    assert max(len(entry.tabs) for entry in all_entries()) <= MOST_TABS
+
+
+def test_an_entry_leads_to_the_first_page_that_one_may_open(sample, annotator, reviewer, client):
+    for person, page in ((annotator, "/w/home/label/"), (reviewer, "/w/home/queue/")):
+        client.force_login(person)
+        answer = client.get("/w/home/queue/agreement/")
+        assert entries_of(answer)["Label"].url == page
+        assert answer.context["trail"][0].url == page
+        assert client.get(page).status_code == 200
+
+
 def test_one_sees_only_the_tabs_that_one_may_open(sample, annotator, client):
     client.force_login(annotator)
     row = client.get("/w/home/people/").context["tabs"]
@@ -150,8 +193,8 @@ def test_one_sees_only_the_tabs_that_one_may_open(sample, annotator, client):
 def test_what_waits_on_a_tab_is_told_at_its_place_too(sample, admin, client):
     Promotion.objects.create(world=sample.world, run=sample.run, state="proposed", reason="r")
     client.force_login(admin)
-    page = client.get("/w/home/runs/")
-    assert "1 run proposed" in entries_of(page)["Runs"].dot
+    page = client.get("/w/home/predicates/robot/")
+    assert "1 run proposed" in entries_of(page)["Robot"].dot
     (promotion,) = [tab for tab in page.context["tabs"] if tab.label == "Promotion"]
     assert promotion.dot.startswith("1 run")
 

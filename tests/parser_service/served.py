@@ -14,6 +14,13 @@ from tests.parser_service.made_up import make_split
 THINGS = [("object", "red cup"), ("object", "bowl"), ("room", "kitchen"), ("location", "desk")]
 
 
+def name_umbrella(world: World) -> None:
+    """Give a world the thing of which the texts of the paper speak."""
+    Entity.objects.create(
+        ontology=world.ontology, entity_class="object", text="umbrella", position=99
+    )
+
+
 def make_home(world: World) -> Split:
     """Give ``world`` a few things and a split to train on."""
     ontology = Ontology.objects.create(world=world)

@@ -20,7 +20,7 @@ from parser_service.reviews.stored_findings import findings_of
 from parser_service.reviews.summaries import paper_texts, runs_beside
 from parser_service.reviews.target import parts_of
 from parser_service.web.page_of_run import head_of
-from parser_service.web.results.asked_runs import asked_runs, runs_to_choose
+from parser_service.web.runs.asked_runs import asked_runs, runs_to_choose
 
 
 @dataclass(frozen=True, slots=True)

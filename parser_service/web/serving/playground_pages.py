@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any
-from urllib.parse import urlencode
 
 from django.http import HttpResponse, QueryDict
 from django.shortcuts import render
@@ -16,7 +15,7 @@ from django_htmx.http import replace_url
 from annotations.generation.example_commands import example_commands
 from annotations.language.plans import MOST_COMMANDS
 from annotations.language.texts import Refusal
-from annotations.models import Duty, World
+from annotations.models import Duty, Entity, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import ready_templates
@@ -30,6 +29,7 @@ from parser_service.runs.promoting import promoted_run
 from parser_service.serving.answering import answering_parts
 from parser_service.serving.default_runs import opening_run
 from parser_service.serving.parser_client import ParserAway, ParserRefused, client
+from parser_service.web.serving.beside_pages import address_of, beside, text_of
 from parser_service.web.serving.curl_commands import curl_command
 from parser_service.web.serving.heard_pieces import heard_pieces
 
@@ -45,12 +45,15 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
     The field ``run`` names what answers alone: a run, or the grammar oracle. Without it the world answers.
     """
     parts, promoted = answering_parts(world), promoted_run(world)
+    shown = beside(request.GET, world)
     run, parser = _alone_in(request.GET)
     runs = world.runs.succeeded().select_related("split").order_by("-pk")[:MOST_OFFERED]
     others = [each for each in runs if each != promoted]
     opening = None if parts else opening_run(world)
+    example = shown.get("example")
+    text = text_of(request.GET) or (example.utterance if example else "")
     context = {
-        "text": _text_of(request.GET),
+        "text": text,
         "parts": parts,
         "has_templates": ready_templates(world).exists(),
         "runs": [promoted, *others] if promoted else others,
@@ -58,6 +61,8 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
         "page_keys": KEYS,
+        "asks_beside": bool(text and shown.get("chosen_beside")),
+        **shown,
         **_asking(world),
     }
     return render(request, "parser_service/serving/playground.html", context)
@@ -67,9 +72,9 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
 @world_view(Duty.VIEW, WRITE, does=NOTHING)
 def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the parse server about the text, and show its answer."""
-    text, (run, parser) = _text_of(request.POST), _alone_in(request.POST)
+    text, (run, parser) = text_of(request.POST), _alone_in(request.POST)
     named = {name: value for name, value in (("run", run), ("parser", parser)) if value}
-    context = {"text": text, **_asking(world)}
+    context = {"text": text, "is_beside": "beside" in request.POST, **_asking(world)}
     if text:
         try:
             answer = client().parse(world.name, text, run=run, parser=parser)
@@ -85,11 +90,7 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
         except ParserRefused as error:
             context["refused"] = error.message
     response = render(request, "parser_service/serving/_playground_answer.html", context)
-    query = urlencode(
-        {name: value for name, value in (("text", text), ("run", parser or run)) if value}
-    )
-    address = reverse("playground", kwargs={"world": world.name})
-    return replace_url(response, f"{address}?{query}" if query else address)
+    return replace_url(response, address_of(request.POST, world))
 
 
 @world_view(Duty.VIEW, WRITE, does="report a wrong answer")
@@ -98,7 +99,7 @@ def playground_wrong(request: WorldRequest, world: World) -> HttpResponse:
     sent = request.POST
     run = TrainingRun.objects.filter(world=world, pk=number_in(sent.get("run", ""))).first()
     context: dict[str, Any] = {
-        "text": _text_of(sent),
+        "text": text_of(sent),
         "run": run.pk if run else "",
         "parser": sent.get("parser", ""),
         "right_form": sent.get("right_form", ""),
@@ -130,13 +131,23 @@ def _asking(world: World) -> dict[str, Any]:
 
 def _examples(world: World) -> list[tuple[str, list[tuple[int, str]]]]:
     """Return texts to try with the digits that take them, by what they are; commands of the world come first."""
-    own = example_commands(world, OWN_EXAMPLES)
-    paper = [probe.text for probe in PAPER_PROBES]
+    own, paper = example_commands(world, OWN_EXAMPLES), _paper_texts(world)
     groups = (
         ("Commands of this world", enumerate(own, start=1)),
         ("Texts of the paper", enumerate(paper, start=len(own) + 1)),
     )
     return [(legend, numbered) for legend, texts in groups if (numbered := list(texts))]
+
+
+def _paper_texts(world: World) -> list[str]:
+    """Return the texts of the paper that name something of this world; of others none is understood here."""
+    texts = [probe.text for probe in PAPER_PROBES]
+    words = {word for text in texts for word in text.split()}
+    names = Entity.objects.filter(ontology__world=world, text__in=words).values_list(
+        "text", flat=True
+    )
+    known = set(names)
+    return [text for text in texts if known.intersection(text.split())]
 
 
 def _bars(answer: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], float | None]]:
@@ -156,7 +167,3 @@ def _alone_in(query: QueryDict) -> tuple[int | None, str]:
     """Return the run that is to answer alone, and the parser that needs none; neither where the world answers."""
     alone = query.get("run", "")
     return (None, ORACLE) if alone == ORACLE else (number_in(alone) or None, "")
-
-
-def _text_of(query: QueryDict) -> str:
-    return " ".join(query.get("text", "").replace("\0", "").split())[:MOST_CHARACTERS]

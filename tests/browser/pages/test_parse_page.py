@@ -15,7 +15,7 @@ from tests.browser.faults import narrow_and_dark, only_faults, wide_and_light
 from tests.browser.variants import NARROW_DARK, SIZES, VARIANTS, WIDE_LIGHT, Variant
 from tests.browser.walking import tab_to
 from tests.parser_service.live_server import parse_server  # noqa: F401
-from tests.parser_service.served import make_home, trained_run
+from tests.parser_service.served import make_home, name_umbrella, trained_run
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
 
@@ -82,7 +82,8 @@ def test_plan_and_sentence_are_on_the_first_screen(open_page, address, text):
         assert page.evaluate("document.documentElement.scrollWidth") <= variant.width
 
 
-def test_one_click_on_an_example_fills_and_parses(open_page):
+def test_one_click_on_an_example_fills_and_parses(open_page, world):
+    name_umbrella(world)
     for variant in VARIANTS[::2]:
         page = open_page("parse/", variant)
         groups = page.locator("[data-suggestions] legend").all_inner_texts()

@@ -16,6 +16,7 @@ from parser_service.reviews.target import Target
 from parser_service.reviews.tryout_answers import answer_jobs
 from tests.filled_world import save_parser
 from tests.parser_service.reviews.analyses.conftest import done
+from tests.parser_service.served import name_umbrella
 from tests.waiting import wait_for
 
 pytestmark = [pytest.mark.browser, pytest.mark.django_db(transaction=True)]
@@ -39,20 +40,21 @@ def test_the_slider_says_what_refusing_saves_and_the_address_keeps_it(
     expect(page).to_have_url(re.compile(r"bound=0\.5$"))
 
 
-def test_a_text_of_the_paper_is_one_key_away_and_its_answer_follows(
+def test_a_text_of_the_paper_is_one_click_away_and_its_answer_follows(
     page_of, live_server, sample, reviewer, settings
 ):
     settings.WORK_TEMPO = 10_000
     save_parser(sample.run)
+    name_umbrella(sample.world)
     page = page_of(reviewer)
-    page.goto(f"{live_server.url}/w/home/try/?run={sample.run.pk}")
-    expect(page.locator("#tryout-answers")).to_contain_text("Type a text")
-    page.keyboard.press("4")
-    expect(page.locator("#tryout-text")).to_have_value("Bring an umbrella to me")
-    expect(page.locator("#tryout-answers")).to_contain_text("waiting for the answer")
+    page.goto(f"{live_server.url}/w/home/parse/?beside={sample.run.pk}")
+    expect(page.locator("#beside-answers")).to_contain_text("Type a text")
+    page.locator(".suggestion", has_text="Bring an umbrella to me").click()
+    expect(page.locator("#playground-text")).to_have_value("Bring an umbrella to me")
+    expect(page.locator("#beside-answers")).to_contain_text("waiting for the answer")
     expect(page).to_have_url(re.compile(r"text=Bring\+an\+umbrella\+to\+me"))
     wait_for(lambda: answer_jobs(sample.world).exists(), "the job is asked for")
     done(answer_jobs(sample.world).get())
-    expect(page.locator("#tryout-answers .lf").first).to_be_visible()
+    expect(page.locator("#beside-answers .lf").first).to_be_visible()
     assert Tryout.objects.get().is_answered
     assert Job.objects.filter(kind=JobKind.ANSWER).count() == 1

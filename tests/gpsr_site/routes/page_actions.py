@@ -167,7 +167,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "error_category": "patch error-category-detail",
     "error_category_move": "post error-category-move",
     "error_category_delete": "delete error-category-detail",
-    "tryout_ask": "post parse",
+    "beside_ask": "post parse",
     # Parsing
     "playground_ask": "post parse",
     "joint_plan_ask": "post joint-plan",
@@ -260,7 +260,8 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "probes": "get run-probes",
     "predictions": "get predictions, get candidates",
     "review": "get predictions, get answer-review",
-    **dict.fromkeys(("playground", "tryout", "joint_plan"), CHOICES),
+    **dict.fromkeys(("playground", "joint_plan"), CHOICES),
+    "tryout": NoRoute("An old address, which leads to Parse."),
     **dict.fromkeys(("promotions", "parser_state"), "get promotion-list"),
     "offered_entities": "get offered-entity-list",
     "plan_schema": NoRoute("The page is the file itself, for programs."),

@@ -131,7 +131,6 @@ POLICY = [
             "defaults",
             "sensitivity",
             "probes",
-            "tryout",
             "playground",
             "joint_plan",
             "parser_state",
@@ -289,7 +288,8 @@ POLICY = [
         Rule(name, LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post")
         for name in ("slices", "slice_rename", "slice_delete")
     ),
-    Rule("tryout_ask", *MEMBERS, method="post"),
+    Rule("tryout", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON),
+    Rule("beside_ask", *MEMBERS, method="post"),
     Rule("playground_ask", *MEMBERS, method="post"),
     Rule("playground_wrong", LOG_IN, NOWHERE, 422, 422, 422, method="post"),
     Rule("analysis_start", LOG_IN, NOWHERE, NO, GONE_ON, GONE_ON, method="post"),

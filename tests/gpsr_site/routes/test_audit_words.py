@@ -28,7 +28,7 @@ ONLY_CHECKS = re.compile("_(check|preview|suggestions|consequences)$")
 UNRECORDED = {
     # What one person alone sees
     *("draft", "inbox", "notice_open", "queue_next", "first_steps"),
-    *("playground_ask", "tryout_ask", "joint_plan_ask", "try_examples"),
+    *("playground_ask", "beside_ask", "joint_plan_ask", "try_examples"),
     # Contributors are known by a pseudonym alone, also where they are logged in
     *("campaign", "campaign_place", "campaign_done"),
 }

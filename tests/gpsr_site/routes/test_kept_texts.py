@@ -18,7 +18,6 @@ LONG = 200  # characters: a field that takes as many is for sentences
 WITHOUT_DRAFT = {
     "upload": "what it holds came with a file or from a form that kept it",
     "playground": "the address holds the text",
-    "tryout": "the address holds the text",
     "joint_plan": "the address holds the texts",
     "dialogues": "one command, which begins a dialogue",
     "dialogue": "one answer in a conversation, which goes on meanwhile",

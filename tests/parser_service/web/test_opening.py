@@ -78,7 +78,7 @@ def test_parse_opens_on_it(better, by_form, anna, sample):
 
 
 def test_the_try_out_opens_on_it(better, by_form, anna):
-    assert anna.get("/w/home/try/").context["chosen"] == [better]
+    assert anna.get("/w/home/parse/?beside=usual").context["chosen_beside"] == [better]
 
 
 def test_compare_opens_on_the_split_with_runs_to_compare(better, by_form, anna, sample):

@@ -143,4 +143,4 @@ def test_runs_and_their_pages_say_that_they_learned_from_a_share(curve, anna):
     page = " ".join(anna.get(f"/w/home/runs/{run.pk}/").content.decode().split())
     assert "10 % of gen" in page and "3, 10 % " in page
     assert "10 %</span>" in anna.get("/w/home/runs/").content.decode()
-    assert "10 % of gen of home-split" in anna.get("/w/home/try/").content.decode()
+    assert "10 % of gen of home-split" in anna.get("/w/home/parse/?beside=usual").content.decode()

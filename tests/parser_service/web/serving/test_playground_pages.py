@@ -28,7 +28,7 @@ from parser_service.web.serving.heard_pieces import heard_pieces
 from tests.annotations.conftest import import_tiny
 from tests.annotations.language.sample_ontology import HOME
 from tests.parser_service.live_server import parse_server  # noqa: F401
-from tests.parser_service.served import make_home, trained_run
+from tests.parser_service.served import make_home, name_umbrella, trained_run
 
 PAGE = "/w/home/parse/"
 FETCH = '( bring ( lambda $1 e ( is_a $1 " <object> " ) ) )'
@@ -102,6 +102,10 @@ def test_commands_of_the_world_are_offered_before_the_texts_of_the_paper(run, an
     Command.objects.create(
         world=run.world, logical_form=form, anonymized_text="go for <object>", length=3, position=0
     )
+    assert [legend for legend, _ in anna.get(PAGE).context["examples"]] == [
+        "Commands of this world"
+    ]
+    name_umbrella(run.world)
     page = anna.get(PAGE).content.decode()
     groups = anna.get(PAGE).context["examples"]
     assert [legend for legend, _ in groups] == ["Commands of this world", "Texts of the paper"]

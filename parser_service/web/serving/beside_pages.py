@@ -1,4 +1,4 @@
-"""Try a text on runs: somebody edits an utterance and sees each answer change."""
+"""Runs beside each other on Parse: somebody edits an utterance and sees each answer change."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from typing import Any
 from urllib.parse import urlencode
 
 from django.http import HttpResponse, QueryDict
-from django.shortcuts import render
+from django.shortcuts import redirect, render
 from django.urls import reverse
 from django.views.decorators.cache import never_cache
 from django_htmx.http import replace_url
 
 from annotations.models import Duty, Example, World
+from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
-from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.models import TrainingRun, Tryout
 from parser_service.reviews.tryout_answers import MOST_TEXT, ask, request_answers
 from parser_service.serving.default_runs import opening_run
-from parser_service.web.results.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
+from parser_service.web.runs.asked_runs import MOST_RUNS, asked_runs, runs_to_choose
 
 MOST_OFFERED = 30
-KEYS = (("1–6", "take a text of the paper"),)
+USUAL = "usual"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,55 +54,72 @@ class TriedAnswer:
 
 @world_view(Duty.VIEW)
 def tryout(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the text and the runs that the URL names; the answers come when the page has loaded."""
-    key = number_in(request.GET.get("example", ""))
+    """Lead an old address to Parse, which shows the same runs beside each other."""
+    query = request.GET.copy()
+    query.setlist("beside", query.pop("run", []) or [USUAL])
+    return redirect(f"{reverse('playground', kwargs={'world': world.name})}?{query.urlencode()}")
+
+
+def beside(query: QueryDict, world: World) -> dict[str, Any]:
+    """Return the context of the runs that answer beside each other: those that the address names, or the usual ones
+    for ``beside=usual``. Without either nothing is asked, and the list of runs is not read."""
+    key = number_in(query.get("example", ""))
     example = Example.objects.filter(split__world=world, pk=key).first() if key else None
-    text = _text_of(request.GET) or (example.utterance if example else "")
-    chosen = asked_runs(request.GET, world) or _usual_runs(world)
-    choices = list(dict.fromkeys([*chosen, *runs_to_choose(world, MOST_OFFERED)]))
-    context = {
-        "text": text,
+    if not ("beside" in query or example):
+        return {"is_beside": False}
+    chosen = asked_runs(query, world, "beside") or _usual_runs(world)
+    return {
+        "is_beside": True,
         "example": example,
         "own": OwnEntities.of_pair(world, example) if example else None,
-        "chosen": chosen,
-        "choices": choices,
-        "paper_texts": [probe.text for probe in PAPER_PROBES],
-        "most_text": MOST_TEXT,
+        "chosen_beside": chosen,
+        "choices": list(dict.fromkeys([*chosen, *runs_to_choose(world, MOST_OFFERED)])),
         "most_runs": MOST_RUNS,
-        "page_keys": KEYS,
-        "is_first": bool(text and chosen),
     }
-    return render(request, "parser_service/results/tryout.html", context)
 
 
 @never_cache
 @world_view(Duty.VIEW, WRITE, does=NOTHING)
-def tryout_ask(request: WorldRequest, world: World) -> HttpResponse:
+def beside_ask(request: WorldRequest, world: World) -> HttpResponse:
     """Ask the chosen runs about the text, and show what they have answered.
 
     With ``waiting`` in the URL nothing new is asked: the page looks for answers that were not there yet.
     """
-    text, runs = _text_of(request.POST), asked_runs(request.POST, world)
+    text, runs = text_of(request.POST), asked_runs(request.POST, world, "beside")
     if "waiting" in request.GET:
         row = Tryout.objects.filter(world=world, person=request.user).first()
         if row is not None:
             request_answers(row)  # the job may have ended before it saw the text
     else:
-        row = ask(world, request.user, text, runs) if text and runs else None
+        row = ask(world, request.user, text[:MOST_TEXT], runs) if text and runs else None
     context = {
         "tryout": row,
         "answers": _answers_of(row, world) if row else [],
         "text": text,
         "own": OwnEntities.in_text(world, row.text) if row else None,
     }
-    response = render(request, "parser_service/results/_tryout_answers.html", context)
+    response = render(request, "parser_service/serving/_beside_answers.html", context)
     if "waiting" in request.GET:
         return response
-    query = {"run": request.POST.getlist("run"), "text": text}
-    if example := request.POST.get("example", ""):
-        query["example"] = example
-    address = reverse("tryout", kwargs={"world": world.name})
-    return replace_url(response, f"{address}?{urlencode(query, doseq=True)}")
+    return replace_url(response, address_of(request.POST, world))
+
+
+def address_of(query: QueryDict, world: World) -> str:
+    """Return the address of Parse that asks the same again."""
+    asked = {
+        "text": text_of(query),
+        "run": query.get("run", ""),
+        "beside": [key for key in query.getlist("beside") if key],
+        "example": query.get("example", ""),
+    }
+    address = reverse("playground", kwargs={"world": world.name})
+    named = urlencode({name: value for name, value in asked.items() if value}, doseq=True)
+    return f"{address}?{named}" if named else address
+
+
+def text_of(query: QueryDict) -> str:
+    """Return the text that is asked about, in one line."""
+    return " ".join(query.get("text", "").replace("\0", "").split())[:MOST_CHARACTERS]
 
 
 def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
@@ -122,10 +139,6 @@ def _answers_of(row: Tryout, world: World) -> list[TriedAnswer]:
                 )
             )
     return shown
-
-
-def _text_of(query: QueryDict) -> str:
-    return " ".join(query.get("text", "").replace("\0", "").split())[:MOST_TEXT]
 
 
 def _usual_runs(world: World) -> list[TrainingRun]:
