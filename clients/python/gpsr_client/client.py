@@ -7,7 +7,8 @@ import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from http.client import HTTPException
 from pathlib import Path
-from urllib.parse import quote
+from typing import Any
+from urllib.parse import parse_qsl, quote, urlsplit
 from uuid import uuid4
 
 from gpsr_client.dialogue import Dialogue
@@ -201,6 +202,19 @@ class Workbench:
         """
         query = {"as": format, "split": self._split(split) if split else None, "part": part}
         return self._download("paraphrases/export/", query, file)
+
+    def rows(self, path: str, **filters: object) -> Iterator[dict[str, Any]]:
+        """Yield the rows of a list of the world, such as ``runs/`` or ``runs/3/predictions/``, page after page.
+
+        ``filters`` are those of the list, such as ``outcome="wrong"``, ``sort`` and ``limit``, the rows of a page.
+        """
+        query: Mapping[str, object] = filters
+        while True:
+            page = self._transport.get(f"{self._path}{path}", **query)
+            yield from page["results"]
+            if not page["next"]:
+                return
+            query = dict(parse_qsl(urlsplit(page["next"]).query))
 
     def _split(self, split: int | str) -> int:
         """Return the number of a split, which may be named. Raises Refused if there is none of the name."""
