@@ -30,11 +30,13 @@ def main() -> None:
 
 
 def manage(arguments: list[str]) -> None:
-    """Run one of Django's commands, ours among them; settings that cannot be are one sentence."""
+    """Run one of Django's commands, ours among them; settings that cannot be, and a database that is away, are one
+    sentence."""
     gc.disable()  # until all apps are loaded: see SiteConfig.ready
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "gpsr_site.settings")
     from django.core.exceptions import ImproperlyConfigured
     from django.core.management import execute_from_command_line
+    from django.db import OperationalError
 
     try:
         execute_from_command_line(["gpsr-workbench manage", *arguments])
@@ -42,6 +44,12 @@ def manage(arguments: list[str]) -> None:
         if "--traceback" in arguments:
             raise
         sys.exit(str(error))
+    except OperationalError as error:
+        if "--traceback" in arguments:
+            raise
+        from annotations.background.failures import database_sentence
+
+        sys.exit(database_sentence(error))
 
 
 def command_line(*arguments: str) -> list[str]:

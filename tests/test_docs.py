@@ -296,6 +296,30 @@ def test_the_file_for_citations_names_this_version_and_the_paper():
         assert each in page and each
 
 
+def test_what_troubleshooting_quotes_is_what_the_program_says():
+    page = (DOCS / "guides" / "troubleshooting.md").read_text(encoding="utf-8")
+    paths = [
+        *(path for each in PACKAGES[:3] for path in (ROOT / each).rglob("*.py")),
+        *(ROOT / "templates").rglob("*.html"),
+        ROOT / "Makefile",
+    ]
+    text = "".join(path.read_text(encoding="utf-8") for path in paths)
+    text = re.sub(r'"\s*\n\s*f?"', "", text)  # a sentence goes on in the next line
+    first = re.findall(r"^\| (“.*?) \| ", page, re.MULTILINE)
+    quoted = [each for row in first for each in re.findall(r"“(.*?)”(?:, “|$| and)", row)]
+    assert len(quoted) >= 20
+    words = {  # what stands for a name or a number there
+        *("127.0.0.1:8000: Address already in use", "0.0.0.0", "0xe9", "7 of ranker"),
+        *("8 …; train it again", "…", "(connection failed", "full", "read-only", "Worlds here:"),
+        *("SECRET_KEY", "worker"),
+    }
+    missing = []
+    for each in quoted:
+        parts = re.split("|".join(map(re.escape, sorted(words, key=len, reverse=True))), each)
+        missing += [part for part in parts if part.strip(" ,=“”") and part.strip() not in text]
+    assert missing == []
+
+
 def test_the_table_of_the_paper_is_called_as_the_paper_calls_it():
     for page in (README, (DOCS / "research" / "reproducing.md").read_text(encoding="utf-8")):
         assert "Table 3" in page
