@@ -1,4 +1,5 @@
-"""An installation of commit 7eb91d0, the oldest that is upgraded: a dump of its database with a small world.
+"""An installation of commit 7eb91d0, the oldest that is upgraded: a dump of its database with a small world, in which
+people have left labels, comments, reviews, dialogues, a campaign and a token.
 
 ``7eb91d0.sqlite.sql.gz`` is the output of ``.dump``, ``7eb91d0.postgresql.sql.gz`` that of ``pg_dump --inserts``. Both
 lack the rows of content types and permissions, which ``migrate`` makes anew.
@@ -33,8 +34,12 @@ class Installation:
 
     def manage(self, *arguments: object) -> subprocess.CompletedProcess[str]:
         """Run a command in a process of its own."""
+        return self.python("manage.py", *arguments)
+
+    def python(self, *arguments: object) -> subprocess.CompletedProcess[str]:
+        """Run Python with the settings of this installation."""
         return subprocess.run(
-            [sys.executable, "manage.py", *map(str, arguments)],
+            [sys.executable, *map(str, arguments)],
             cwd=ROOT,
             env={**os.environ, "GPSR_VAR_DIR": str(self.folder), "DATABASE_URL": self.url},
             capture_output=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -72,9 +73,17 @@ def test_an_upgrade_keeps_every_row(upgraded):
     assert {table: upgraded.execute(f"SELECT count(*) FROM {table}")[0][0] for table in tables} == {
         table: before[table] for table in tables
     }
-    assert upgraded.execute("SELECT name, consent, contact, minutes FROM annotations_campaign") == [
-        ("first", "I agree.", "", None)
+    assert upgraded.execute("SELECT name, contact, minutes FROM annotations_campaign") == [
+        ("first", "", None)
     ]
+
+
+def test_an_upgraded_installation_shows_every_page_and_takes_its_token(upgraded):
+    assert upgraded.manage("collectstatic", "--no-input", "--verbosity", "0").returncode == 0
+    done = upgraded.python("-m", "tests.gpsr_site.upgrading.visiting")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["faults"] == {} and found["visited"] > 100
 
 
 def test_an_installation_from_before_7eb91d0_is_refused(tmp_path):
