@@ -56,6 +56,7 @@ from annotations.language.induction.rules import (
     differences,
     is_slot,
     phrase_symbols,
+    shared_at_end,
     with_tokens,
     without_articles,
 )
@@ -71,6 +72,7 @@ from annotations.language.texts import (
 from annotations.language.world import Predicate, PredicateKind, signature_of
 
 CATEGORY = "commands"  # the task category of commands that people give as examples
+MOST_DOUBTS = 2_000
 MOST_ASKED = 3  # predicates of the world that a new one may be
 _ANY = "<>"  # a slot whose class is not known yet
 
@@ -316,6 +318,9 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         )
         for name, where in used.items()
     )
+    doubts = tuple(_doubts(predicates, classes, tuple(lines), named, places, tokens, apart))
+    asked = {frozenset((each.first, each.second)) for each in doubts}
+    not_given = [each for each in extended.left if each not in given]
     return Proposal(
         examples,
         problems,
@@ -324,12 +329,7 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
         synonyms,
         tuple(templates),
         offers_for(extended.left, analogies, {each.token: each.marks for each in classes}),
-        (
-            *_doubts(predicates, classes, tuple(lines), named, places, tokens, apart),
-            *_stored_doubts(
-                [each for each in extended.left if each not in given], named, apart, known
-            ),
-        ),
+        (*doubts, *_stored_doubts(not_given, named, apart | asked, known)),
         tokens,
         {line: tuple(dict.fromkeys(names)) for line, names in of_lines.items()},
         tuple(
@@ -465,22 +465,22 @@ def _doubts(
 ) -> Iterator[Doubt]:
     """Yield what may be one: predicates whose commands differ in their verb alone, classes behind one preposition.
 
-    ``apart`` are the pairs that are said not to be: names of predicates, or marked texts in their brackets.
+    ``apart`` are the pairs that are said not to be: names of predicates, or marked texts in their brackets. Nobody
+    answers very many questions: of predicates there are at most ``MOST_DOUBTS``.
     """
     new = {each.predicate.name for each in predicates} - set(named)
     token_of = {f"[{mark.text}]": token for mark, token in tokens.items()}
     seen = {frozenset(token_of.get(each, each) for each in pair) for pair in apart}
-    for left, right in combinations(rules, 2):
-        pair = frozenset(head_predicate(each.form) for each in (left, right))
-        if (
-            len(pair) == 2
-            and pair & new
-            and pair not in seen
-            and _differ_in_verb(left.words, right.words)
-        ):
+    asked = 0
+    headed = [(head_predicate(each.form), each.words) for each in rules]
+    for (first, words), (second, others) in combinations(headed, 2):
+        pair = frozenset((first, second))
+        if first == second or pair.isdisjoint(new) or pair in seen or asked == MOST_DOUBTS:
+            continue
+        if _differ_in_verb(words, others):
             seen.add(pair)
-            names = head_predicate(left.form), head_predicate(right.form)
-            yield Doubt("predicate", *names, "# {} is not {}".format(*names))
+            asked += 1
+            yield Doubt("predicate", first, second, f"# {first} is not {second}")
     roles: defaultdict[str, dict[str, None]] = defaultdict(dict)
     for place in places:
         if place.role.partition(" ")[0]:  # behind a preposition
@@ -528,6 +528,10 @@ def _role_behind(words: Sequence[str]) -> tuple[str, ...]:
 
 
 def _differ_in_verb(left: Words, right: Words) -> bool:
+    end = shared_at_end(left, right)
+    before, instead = left[: len(left) - end], right[: len(right) - end]
+    if any(map(is_slot, (*before, *instead))) or not {*before}.isdisjoint(instead):
+        return False
     found = differences(left, right)
     return (
         len(found) == 1

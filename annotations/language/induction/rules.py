@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+from functools import lru_cache
 from typing import TypeAlias
 
 from annotations.language.forms import (
@@ -20,6 +22,9 @@ from annotations.language.texts import ARTICLES, BOUNDARIES, LIGHT_WORDS, PRONOU
 Words: TypeAlias = "tuple[str, ...]"
 
 _SAYS_NOTHING = frozenset((*ARTICLES, *BOUNDARIES, *LIGHT_WORDS, *PRONOUNS, "yourself", ","))
+
+
+REMEMBERED = 1 << 15  # pairs of sequences that were compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +90,19 @@ def says_something(word: str) -> bool:
     return word.lower() not in _SAYS_NOTHING
 
 
+def shared_at_end(left: Words, right: Words) -> int:
+    """Return how many words two sequences end with alike."""
+    most = min(len(left), len(right))
+    return next((n for n in range(most) if left[-1 - n] != right[-1 - n]), most)
+
+
+def shared_around(left: Words, right: Words) -> int:
+    """Return how many words two sequences begin and end with alike, none of them counted twice."""
+    start = shared_at_end(left[::-1], right[::-1])
+    return start + shared_at_end(left[start:], right[start:])
+
+
+@lru_cache(maxsize=REMEMBERED)
 def differences(left: Words, right: Words) -> tuple[Difference, ...]:
     """Return the places where two sequences differ, in order, around what they share in that order."""
     opcodes = SequenceMatcher(None, left, right, autojunk=False).get_opcodes()
@@ -115,6 +133,11 @@ def renumbered(form: Form, numbers: Mapping[int, int]) -> Form:
         return leaf
 
     return with_leaves(form, change)
+
+
+def least_difference(left: Counter[str], right: Counter[str]) -> int:
+    """Return how many words two sequences with these counts differ in at least."""
+    return (left - right).total() + (right - left).total()
 
 
 def mean_the_same(left: Rule, right: Rule) -> bool:

@@ -16,17 +16,20 @@ from itertools import combinations
 
 from annotations.language.forms import Unknown, head_predicate
 from annotations.language.induction.rules import (
+    Difference,
     Rule,
     Words,
     count_slots,
     differences,
     is_slot,
+    least_difference,
     mean_the_same,
     says_something,
 )
 
 ROUNDS = 20
 MOST_DIFFERENCES = 3
+MOST_COMPARED = 5_000  # pairs of rules a round
 # Groups of phrases of different predicates are one if they share as many phrases.
 SHARED_PHRASES = 2
 
@@ -92,17 +95,30 @@ def _smallest(rules: Sequence[Rule]) -> list[tuple[str, Words, Words]]:
     for rule in rules:
         if not isinstance(rule.form, Unknown):
             by_shape[head_predicate(rule.form), count_slots(rule.words)].append(rule)
-    by_size: defaultdict[int, list[tuple[str, Words, Words]]] = defaultdict(list)
-    for (head, _), alike in by_shape.items():
-        for left, right in combinations(alike, 2):
-            if mean_the_same(left, right):
-                found = differences(left.words, right.words)
-                if len(found) <= MOST_DIFFERENCES and all(
-                    _may_vary(each.old) and _may_vary(each.new) for each in found
-                ):
-                    size = sum(len(each.old) + len(each.new) for each in found)
-                    by_size[size] += [(head, each.old, each.new) for each in found]
-    return by_size[min(by_size)] if by_size else []
+    counts = {rule.words: Counter(rule.words) for rule in rules}
+    pairs = [
+        (least_difference(counts[left.words], counts[right.words]), number, left, right)
+        for number, (left, right) in enumerate(
+            pair for alike in by_shape.values() for pair in combinations(alike, 2)
+        )
+    ]
+    smallest: dict[int, list[tuple[int, Rule, tuple[Difference, ...]]]] = {}
+    for least, number, left, right in sorted(pairs, key=lambda each: each[:2])[:MOST_COMPARED]:
+        if smallest and least > min(smallest):
+            break
+        if mean_the_same(left, right):
+            found = differences(left.words, right.words)
+            if len(found) <= MOST_DIFFERENCES and all(
+                _may_vary(each.old) and _may_vary(each.new) for each in found
+            ):
+                size = sum(len(each.old) + len(each.new) for each in found)
+                smallest.setdefault(size, []).append((number, left, found))
+    chosen = sorted(smallest[min(smallest)], key=lambda each: each[0]) if smallest else []
+    return [
+        (head_predicate(rule.form), each.old, each.new)
+        for _, rule, found in chosen
+        for each in found
+    ]
 
 
 def _plain(phrase: Words, first: Mapping[str, Words]) -> Words:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from time import process_time
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from annotations.language.forms import Application, Wildcard, canonical_text
 from annotations.language.induction import (
+    MOST_LINES,
     KnownWorld,
     Mark,
     OfferKind,
@@ -170,3 +173,12 @@ def test_a_doubt_that_is_denied_is_not_asked_again() -> None:
 @pytest.mark.parametrize("line", ["say <b> to [x]", "give $5 to [x]", "go " * 40])
 def test_what_no_template_can_say_is_refused(line: str) -> None:
     assert propose(line).problems and not propose(line).templates
+
+
+def test_lines_that_are_alike_are_compared_only_so_often() -> None:
+    begun = process_time()
+    proposal = propose(
+        "\n".join(f"v{n} {'same ' * 25}the [x{n % 7}](thing)" for n in range(MOST_LINES))
+    )
+    assert process_time() - begun < 10  # every pair of them took 26 s
+    assert len(proposal.templates) >= MOST_LINES and proposal.doubts
