@@ -45,7 +45,7 @@ def manifest_of(split: Split, part: str | None = None, source: str | None = None
 
 @cache
 def code_version() -> str:
-    """Return the release of this program, with the commit where it runs from a checkout: ``0.1.0+4f2c91a``."""
+    """Return the release of this program, with the commit where it runs from a checkout: ``1.0.0+4f2c91a``."""
     release = version("gpsr-workbench")
     if not settings.IS_CHECKOUT:  # a repository around the environment is another one
         return release
