@@ -40,7 +40,7 @@ from annotations.web.labelling import (
 from annotations.web.people import account_rest, member_rest, token_rest
 from annotations.web.rest.root import ApiRoot
 from annotations.web.rest.schema_view import SchemaFile
-from annotations.web.worlds import import_rest, job_rest
+from annotations.web.worlds import event_rest, import_rest, job_rest
 from annotations.web.worlds.world_rest import OneWorld, Worlds
 
 app_name = "api"
@@ -115,6 +115,7 @@ corpus = [
     path("generation/", import_rest.Generation.as_view(), name="generation"),
     path("download/", import_rest.Archive.as_view(), name="download"),
     path("download/<slug:part>/", import_rest.ArchivePart.as_view(), name="download-part"),
+    path("events/", event_rest.Events.as_view(), name="events"),
     path("complexity/", command_rest.ComplexityOfWorld.as_view(), name="complexity"),
     path("splits/<int:pk>/examples/", split_rest.ExamplesOfSplit.as_view(), name="split-examples"),
     path("splits/<int:pk>/manifest/", export_rest.SplitManifest.as_view(), name="split-manifest"),

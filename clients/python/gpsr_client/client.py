@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from http.client import HTTPException
 from pathlib import Path
@@ -215,6 +216,30 @@ class Workbench:
             if not page["next"]:
                 return
             query = dict(parse_qsl(urlsplit(page["next"]).query))
+
+    def events(self, last: str = "", every: float = 5.0) -> Iterator[dict[str, Any]]:
+        """Yield what ends in the world, for as long as you take: runs, jobs such as imports, campaigns.
+
+        ``last`` is the ``event_id`` of the last one that you have; by default only what ends from now on is yielded.
+        Asks every so many seconds. ``kind`` is run, job or campaign, ``address`` where to read it.
+        """
+        while True:
+            headers = {"Last-Event-ID": last} if last else {}
+            kind = ""
+            try:
+                with self._transport.open("GET", f"{self._path}events/", headers=headers) as answer:
+                    lines = answer.read().decode("utf-8").split("\n")
+            except (HTTPException, OSError) as error:
+                raise Away(f"The answer broke off: {error}") from error
+            for line in lines:
+                field, _, value = line.partition(": ")
+                if field == "event":
+                    kind = value
+                elif field == "id":
+                    last = value
+                elif field == "data":
+                    yield {"kind": kind, "event_id": last, **json.loads(value)}
+            time.sleep(every)
 
     def _split(self, split: int | str) -> int:
         """Return the number of a split, which may be named. Raises Refused if there is none of the name."""

@@ -98,7 +98,7 @@ READABLE = (
         "guidelines",
     ),
     *("split-changes", "upload-list", "upload-detail", "utterance-export"),
-    *("vocabulary", "paraphrase-export"),
+    *("vocabulary", "paraphrase-export", "events"),
 )
 # Lists that annotators add to, and rows that they change and delete.
 ADDED_BY_ANNOTATORS = (
