@@ -362,9 +362,8 @@ class Answerer:
         ):
             return answer
         before = without_clause(given.text, clause)
-        alone = self.judge(
-            PartAnswer(before, before, self.learned, *self.learned.ask([before], USUAL_BEAM))
-        )
+        [candidates] = self.learned.ask([before], USUAL_BEAM)
+        alone = self.judge(PartAnswer(before, before, self.learned, candidates))
         if alone.is_unknown or not _is_same(
             alone.readings[0].candidate, answer.readings[0].candidate
         ):
