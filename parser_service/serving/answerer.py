@@ -24,10 +24,19 @@ from annotations.language.forms import (
     canonical_text,
     equivalent,
 )
-from annotations.language.grounding import Anonymized, HeardChange, HeardText, HearingReader, Slot
+from annotations.language.grounding import (
+    Anonymized,
+    HeardChange,
+    HeardText,
+    HearingReader,
+    Slot,
+    words_of,
+)
 from annotations.language.plans import (
     MOST_COMMANDS,
     Fit,
+    Left,
+    LeftOut,
     Objection,
     StoppingWords,
     best_alternative,
@@ -35,9 +44,11 @@ from annotations.language.plans import (
     exchange,
     fit,
     join,
+    last_clause,
     objections,
     shall_i,
     with_entities,
+    without_clause,
 )
 from annotations.language.texts import Refusal
 from parser_service.analysis.sureness import (
@@ -114,7 +125,8 @@ class PartAnswer:
     """What one part answered to an utterance: ``text`` is what it was given, which is what the utterance says from
     ``start`` on, without noise. ``agrees`` says whether the other part
     gives the same form; None where that was not asked or is silent. ``pieces`` are the answers to the commands of an
-    utterance that holds several. ``missing`` says why the last part did not answer."""
+    utterance that holds several. ``unread`` is a clause of ``text`` without which the part answers the same.
+    ``missing`` says why the last part did not answer."""
 
     utterance: str
     text: str
@@ -123,6 +135,7 @@ class PartAnswer:
     agrees: bool | None = None
     pieces: tuple[PartAnswer, ...] = ()
     changes: tuple[HeardChange, ...] = ()
+    unread: tuple[LeftOut, ...] = ()
     missing: str = ""
     start: int = 0
 
@@ -218,7 +231,7 @@ class Answerer:
         """Return the answers without the last part."""
         given = [self._cut(each, beam) for each in self._ask_oracle(utterances, beam)]
         answers = map(self.judge, self._ask_learned(given, beam))
-        return [self._cut_again(each, beam) for each in answers]
+        return [self._cut_again(self._mark_unread(each), beam) for each in answers]
 
     def _ask_last(self, answers: Sequence[Answer], beam: int) -> list[Answer]:
         """Return the answers with what the last part says where nothing was understood and nothing speaks against it.
@@ -333,6 +346,31 @@ class Answerer:
             alone = [self._cut_again(each, beam).given for each in judged]
         return replace(given, pieces=tuple(alone))
 
+    def _mark_unread(self, answer: Answer) -> Answer:
+        """Return the answer with the clause that the learned part has not read: without it, it answers the same."""
+        given = answer.given
+        if given.pieces or self.learned is None or given.part is not self.learned:
+            return answer
+        spans = answer.heard.spans
+        clause = last_clause(given.text, {(each.start, each.end) for each in spans})
+        # Words that commands have were learned, and entities are looked after one by one (``fit``).
+        if (
+            clause is None
+            or answer.is_unknown
+            or words_of(clause.text)[0] in self.writer.language.use.vocabulary
+            or any(each.start >= clause.start for each in spans)
+        ):
+            return answer
+        before = without_clause(given.text, clause)
+        [candidates] = self.learned.ask([before], USUAL_BEAM)
+        alone = self.judge(PartAnswer(before, before, self.learned, candidates))
+        if alone.is_unknown or not _is_same(
+            alone.readings[0].candidate, answer.readings[0].candidate
+        ):
+            return answer
+        unread = LeftOut(Left.ACTION, clause.text, clause.start, clause.end)
+        return self.judge(replace(given, unread=(unread,)))
+
     def _cut_again(self, answer: Answer, beam: int) -> Answer:
         """Return the answer with one for each command, where both parts together understand some of them and neither
         is sure of all together, or the learned part leaves something out."""
@@ -407,6 +445,7 @@ class Answerer:
             reasons = objections(heard)
         if has_learned:
             readings, fits = self._fit(readings, heard, given)
+            fits = replace(fits, left_out=(*fits.left_out, *given.unread))
         about = replace(self._about(given, heard, readings, fits), objections=bool(reasons))
         probability = None
         if about.evidence is not None:
@@ -638,7 +677,8 @@ class Answerer:
             case Decision.ACT:
                 return str(first["spoken"])
             case Decision.CONFIRM:
-                return shall_i(first["english"])
+                left_out = [each.message for each in answer.reasons if each.code == _LEFT_OUT]
+                return " ".join((shall_i(first["english"]), *left_out))
             case Decision.ASK if first:
                 asked = [slot["question"] for slot in first["open_slots"]]
                 asked += [

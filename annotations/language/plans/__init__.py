@@ -14,8 +14,25 @@ from annotations.language.plans.book import (
     shipped_books,
 )
 from annotations.language.plans.comparing import plan_key, same_plan
-from annotations.language.plans.cutting import Islands, Judge, Piece, cut, cut_at_joints, sentences
-from annotations.language.plans.fitting import Exchange, Fit, Left, best_fitting, exchange, fit
+from annotations.language.plans.cutting import (
+    Islands,
+    Judge,
+    Piece,
+    cut,
+    cut_at_joints,
+    last_clause,
+    sentences,
+    without_clause,
+)
+from annotations.language.plans.fitting import (
+    Exchange,
+    Fit,
+    Left,
+    LeftOut,
+    best_fitting,
+    exchange,
+    fit,
+)
 from annotations.language.plans.habitual_places import UsualPlaces, usual_places
 from annotations.language.plans.joint_plans import (
     METRES,

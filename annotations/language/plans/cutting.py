@@ -478,6 +478,33 @@ _DONE_WORDS = frozenset(FINISHED_WORDS) | {"you", "that", "this", "all", "everyt
 # Without a grammar
 
 
+def last_clause(utterance: str, names: Collection[tuple[int, int]] = ()) -> Piece | None:
+    """Return the clause that is said last behind a conjunction, with a verb of its own; None where there is none.
+
+    "Bring me the cup and polish it" has one, "bring me the cup and a plate" and "… and that is all" have none.
+
+    Args:
+        names: where entities are named, as characters. No clause begins inside one: "salt and pepper".
+    """
+    said = _Cut(utterance, Islands(names=frozenset(names)), False)
+    last = len(said.words)
+    for first in range(last - 1, 0, -1):
+        if said.said[first - 1] in _CONJUNCTIONS and first - 1 not in said.named:
+            if not said._begins_command(first, first, last):
+                return None
+            start, end = said.words[first][0], said.words[-1][1]
+            return Piece(start, end, utterance[start:end], False)
+    return None
+
+
+def without_clause(utterance: str, clause: Piece) -> str:
+    """Return what is said before a ``last_clause``, without the joint."""
+    before = utterance[: clause.start].split()
+    while before and before[-1].strip(_AROUND).casefold() in _PARTING:
+        before.pop()
+    return " ".join(before).rstrip(_AROUND)
+
+
 def _phrases(phrases: Iterable[str]) -> str:
     return "|".join(re.escape(each) for each in sorted(phrases, key=len, reverse=True))
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from annotations.language.plans import Islands, cut, cut_at_joints
+from annotations.language.plans import Islands, cut, cut_at_joints, last_clause, without_clause
 from annotations.language.texts import JOINTS
 
 GO, TAKE, GREET = "go to the galley", "take the cup and bring it to me", "greet Ann"
@@ -150,3 +150,32 @@ def test_any_text_is_cut_or_comes_back(text):
     assert texts_of(text, knows()) == (text,)
     everything = texts_of(text, lambda pieces: [None if each == text else 0.0 for each in pieces])
     assert 1 <= len(everything) <= 3
+
+
+@pytest.mark.parametrize(
+    ("said", "clause"),
+    [
+        ("bring me the cup and polish it", "polish it"),
+        ("bring me the cup, and then polish it please", "polish it please"),
+        ("water the roses and sing", "sing"),
+        ("bring me the cup and a plate", ""),
+        ("bring me the cup and that is all", ""),
+        ("bring me the salt and pepper", ""),
+        ("bring me the cup", ""),
+        ("and", ""),
+        ("", ""),
+    ],
+)
+def test_the_clause_that_is_said_last_has_a_verb_of_its_own(said, clause):
+    at = said.find("salt and pepper")
+    found = last_clause(said, {(at, len(said))} if at >= 0 else ())
+    assert (found.text if found else "") == clause
+    if found:
+        assert said[found.start : found.end] == clause
+        assert without_clause(said, found) == said.split(" and")[0].rstrip(",")
+
+
+@given(st.text(alphabet="ab ,.and'", max_size=60))
+def test_what_stands_before_a_clause_is_not_empty(text):
+    found = last_clause(text)
+    assert found is None or text[found.start : found.end] == found.text
