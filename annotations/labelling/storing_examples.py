@@ -165,7 +165,12 @@ def _unsaved(
             for each in new_classes(proposal, classes_of(world))
         ],
         [
-            models.Entity(ontology=ontology, entity_class=each.entity_class, text=each.text)
+            models.Entity(
+                ontology=ontology,
+                entity_class=each.entity_class,
+                text=each.text,
+                aliases=list(each.aliases),
+            )
             for each in new_entities(proposal, known)
         ],
         [

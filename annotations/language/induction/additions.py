@@ -73,7 +73,7 @@ def new_classes(proposal: Proposal, known: EntityClasses) -> tuple[EntityClass, 
 def new_entities(proposal: Proposal, known: KnownWorld) -> tuple[Entity, ...]:
     """Return the entities that the world lacks."""
     return tuple(
-        Entity(each.token, text)
+        Entity(each.token, text, proposal.names.get(text, ()))
         for each in proposal.classes
         for text in each.texts
         if known.texts.get(folded(text)) != each.token

@@ -25,6 +25,7 @@ from annotations.language.texts import (
     MAX_ENTITY,
     MAX_GLOSS,
     MAX_PREDICATE,
+    TITLES,
     LanguageError,
     Position,
     Problem,
@@ -133,7 +134,7 @@ def read_example(line: str, position: Position | None = None) -> Example:
     require_length(line, "line", MOST_CHARACTERS, place)
     line = normalise_line(line)
     said, equals, meaning = line.partition(" = ")
-    parts = tuple(_parts(said, place))
+    parts = tuple(_with_titles(_parts(said, place)))
     if all(part == "," for part in parts):
         raise LanguageError("the line says nothing", place, f"write a command, as in: {EXAMPLE}")
     if len(parts) > MOST_PARTS:
@@ -171,6 +172,27 @@ def _parts(said: str, place: Position) -> Iterator[Part]:
                         f"“{word[:40]}” is no word of a command", here, "write it without < and $"
                     )
                 yield word
+
+
+def _with_titles(parts: Iterable[Part]) -> Iterator[Part]:
+    """Yield the parts with a title inside the mark of the name behind it: ``the doctor [Brandt]``."""
+    title = ""
+    for part in parts:
+        if isinstance(part, Mark) and title:
+            has_name = part.text[0].isupper()
+            if not has_name:
+                yield title
+            part = replace(part, text=f"{title} {part.text}") if has_name else part
+            title = ""
+        elif title:
+            yield title
+            title = ""
+        if isinstance(part, str) and part.casefold() in TITLES:
+            title = part
+        else:
+            yield part
+    if title:
+        yield title
 
 
 def _require_class(token: str, place: Position) -> None:

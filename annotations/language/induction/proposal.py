@@ -48,6 +48,7 @@ from annotations.language.induction.marked_lines import (
     said_english,
     with_english,
 )
+from annotations.language.induction.names import other_names
 from annotations.language.induction.offers import Offer, offers_for
 from annotations.language.induction.rules import (
     Rule,
@@ -222,7 +223,8 @@ class Doubt:
 class Proposal:
     """What the lines make. Classes and predicates that the world has are among them where lines use them.
 
-    ``understood`` are the lines whose commands the world understands already: they make no templates.
+    ``understood`` are the lines whose commands the world understands already: they make no templates. ``names`` has
+    what else the texts of the classes may be called.
     """
 
     examples: tuple[Example, ...]
@@ -237,6 +239,7 @@ class Proposal:
     predicates_of_lines: Mapping[int, tuple[str, ...]]
     understood: tuple[int, ...] = ()
     changes: tuple[Change, ...] = ()
+    names: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def propose(text: str, known: KnownWorld | None = None) -> Proposal:
@@ -339,6 +342,7 @@ def propose(text: str, known: KnownWorld | None = None) -> Proposal:
             and all(folded(mark.text) in known.texts for mark in each.marks)
         ),
         extended.changes,
+        other_names(classes, known.texts, apart, (*lines, *known.rules)),
     )
 
 

@@ -165,6 +165,8 @@ from annotations.language.texts.word_lists import (
     THING_WORDS,
     THINKING_PHRASES,
     TIME_PHRASES,
+    TITLE_SPELLINGS,
+    TITLES,
     VAGUE_WORDS,
     WANTING_PHRASES,
     WHOLE_QUESTIONS,

@@ -11,6 +11,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -131,6 +132,13 @@ GOING_WORDS = frozenset(_words.words("going"))
 ASKING_WORDS = frozenset(_words.words("asking"))
 POLITE_OPENINGS = _words.words("polite_openings")
 NO_COMMAND_WORDS = frozenset(_words.words("no_command"))
+
+_titles = WordFile("titles")
+TITLE_SPELLINGS = _titles.groups("spellings")
+# What stands before the name of a person, in small letters.
+TITLES = frozenset(
+    each.casefold() for each in (*_titles.words("callings"), *chain(*TITLE_SPELLINGS))
+)
 
 _courtesy = WordFile("courtesy")
 COURTESY_OPENINGS = _courtesy.words("openings")

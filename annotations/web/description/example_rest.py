@@ -53,11 +53,15 @@ class NewExamples(ExampleLines):
 
 
 class ProposedClassSerializer(serializers.Serializer[Any]):
-    """``is_named`` is false where nobody has said what they are: it has to be said before anything is stored."""
+    """``is_named`` is false where nobody has said what they are: it has to be said before anything is stored.
+
+    ``aliases`` has what else a text may be called; a line such as ``# [Brandt] is not [doctor Brandt]`` refuses it.
+    """
 
     token = serializers.CharField()
     is_named = serializers.BooleanField()
     texts = serializers.ListField(child=serializers.CharField())
+    aliases = serializers.DictField(child=serializers.ListField(child=serializers.CharField()))
     lines = lines_of_numbers()
 
 
@@ -183,7 +187,16 @@ def shown(proposal: Proposal) -> dict[str, Any]:
     """Return what ``ProposalSerializer`` describes."""
     return {
         "problems": [as_json(each) for each in proposal.problems],
-        "classes": proposal.classes,
+        "classes": [
+            {
+                "token": each.token,
+                "is_named": each.is_named,
+                "texts": each.texts,
+                "aliases": {text: proposal.names[text] for text in each.texts},
+                "lines": each.lines,
+            }
+            for each in proposal.classes
+        ],
         "predicates": [
             {
                 "name": each.predicate.name,

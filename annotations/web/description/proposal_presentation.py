@@ -37,13 +37,17 @@ OFFER_TITLES = {
 
 @dataclass(frozen=True, slots=True)
 class ShownClass:
-    """``name`` is empty where nobody has said it; ``new`` are the members that the world lacks."""
+    """``name`` is empty where nobody has said it; ``new`` are the members that the world lacks.
+
+    ``names`` are what else these may be called, each with the line that refuses it.
+    """
 
     token: str
     name: str
     is_known: bool
     members: tuple[str, ...]
     new: frozenset[str]
+    names: tuple[tuple[str, str], ...]
     why: str
 
 
@@ -129,7 +133,7 @@ class ShownProposal:
 
 def shown(proposal: Proposal, known: KnownWorld) -> ShownProposal:
     """Return what the page shows of a proposal for a world."""
-    classes = tuple(_class(each, known) for each in proposal.classes)
+    classes = tuple(_class(each, proposal, known) for each in proposal.classes)
     predicates = tuple(_predicates(proposal, known))
     new = {
         "kind of things": sum(not each.is_known for each in classes),
@@ -159,13 +163,19 @@ def _lines(numbers: Sequence[int]) -> str:
     return f"{'line' if len(numbers) == 1 else 'lines'} {shown}"
 
 
-def _class(each: MarkedClass, known: KnownWorld) -> ShownClass:
+def _class(each: MarkedClass, proposal: Proposal, known: KnownWorld) -> ShownClass:
     new = frozenset(text for text in each.texts if known.texts.get(folded(text)) != each.token)
     is_known = each.token in known.texts.values()
     reasons = list(dict.fromkeys(filter(None, (_reason(*evidence) for evidence in each.evidence))))
     why = f"{_lines(each.lines)}: " + ("; ".join(reasons[:3]) or "marked once")
+    names = tuple(
+        (name, f"# [{name}] is not [{text}]")
+        for text in each.texts
+        if text in new
+        for name in proposal.names[text]
+    )
     return ShownClass(
-        each.token, each.token if each.is_named else "", is_known, each.texts, new, why
+        each.token, each.token if each.is_named else "", is_known, each.texts, new, names, why
     )
 
 

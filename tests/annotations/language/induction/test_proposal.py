@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from annotations.language.forms import Application, Wildcard, canonical_text
+from annotations.language.forms import Application, Wildcard, canonical_text, to_template
 from annotations.language.induction import (
     MOST_LINES,
     KnownWorld,
@@ -182,3 +182,51 @@ def test_lines_that_are_alike_are_compared_only_so_often() -> None:
     )
     assert process_time() - begun < 10  # every pair of them took 26 s
     assert len(proposal.templates) >= MOST_LINES and proposal.doubts
+
+
+def understood(lines: str, said: str) -> str:
+    found = oracle_of(propose(lines)).predict([said])[0]
+    return to_template(grounded(found[0])) if found else ""
+
+
+CLINIC = """
+call [doctor Brandt](staff)
+guide [Mrs Alvarez](patient) to [room nine](room)
+find the book [Moby Dick](book)
+feed [goat Ella](animal)
+"""
+
+
+@pytest.mark.parametrize(
+    "said, form",
+    [
+        ("call the doctor Brandt", '(call "doctor Brandt")'),
+        ("call Dr. Brandt", '(call "doctor Brandt")'),
+        ("call Brandt", '(call "doctor Brandt")'),
+        ("call the staff Brandt", '(call "doctor Brandt")'),
+        ("call Brandt the doctor", '(call "doctor Brandt")'),
+        ("guide the patient Alvarez to the room nine", '(guide "Mrs Alvarez" "room nine")'),
+        ("guide Missus Alvarez to room number nine", '(guide "Mrs Alvarez" "room nine")'),
+        ("find the book Moby Dick", '(find_book "Moby Dick")'),
+        ("call nurse Brandt", ""),
+        ("guide the doctor Alvarez to room nine", ""),
+    ],
+)
+def test_people_and_things_are_named_with_titles_and_nouns(said: str, form: str) -> None:
+    assert understood(CLINIC, said) == form
+
+
+def test_a_title_before_a_mark_is_part_of_the_name() -> None:
+    proposal = propose("call the doctor [Brandt](staff)\nask the nurse [in charge](staff)")
+    assert [each.texts for each in proposal.classes] == [("doctor Brandt", "in charge")]
+    assert [each.pattern for each in proposal.templates] == [
+        "call the {staff}",
+        "ask the nurse {staff}",
+    ]
+
+
+def test_a_name_is_no_other_name_twice_nor_where_it_is_refused() -> None:
+    names = propose("call [doctor Kim](staff)\ncall [nurse Kim](staff)").names
+    assert not any("Kim" in each for each in names.values())
+    refused = propose("call [doctor Brandt](staff)\n# [Brandt] is not [doctor Brandt]").names
+    assert "Brandt" not in refused["doctor Brandt"] and "Dr Brandt" in refused["doctor Brandt"]
