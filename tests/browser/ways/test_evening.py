@@ -316,9 +316,10 @@ def test_the_first_steps_lead_through_an_evening(
     click(page.get_by_role("button", name="Save"), "Ontology")
     assert guessed == 6
     click(page.locator("#rail a", has_text="Overview"), "Overview")
-    expect(page.locator(".first-steps").get_by_role("button", name=re.compile("^Train"))).to_be_visible()  # with rooms left open
+    steps = page.locator(".first-steps")
+    expect(steps.get_by_role("button", name=re.compile("^Train"))).to_be_visible()  # rooms are open
     parse_server.update()
-    click(page.locator(".first-steps").get_by_role("button", name="Try a command"), "Parse")
+    click(steps.get_by_role("button", name="Try a command"), "Parse")
     page.locator("#playground-text").press_sequentially("Could you get me the milk from the fridge")
     answer = page.locator("#playground-answer")
     expect(answer.locator(".plan-steps code").first).to_have_text("go_to(fridge)")
