@@ -194,7 +194,7 @@ def _of_competition(world: World) -> Iterable[FirstStep]:
     entities = Entity.objects.filter(ontology__world=world)
     has_folder = entities.filter(source__endswith=".md").exists()
     locations = entities.filter(entity_class="location")
-    without_room = any(not each.attributes.get("room") for each in locations)
+    with_room = [bool(each.attributes.get("room")) for each in locations]
     yield FirstStep(
         "Drop the folder of your competition: its names, rooms, locations and objects.",
         *("Import the folder", "import_competition", Duty.MANAGE),
@@ -203,5 +203,6 @@ def _of_competition(world: World) -> Iterable[FirstStep]:
     yield FirstStep(
         "Say in which room each location is; names that tell are guessed.",
         *("Choose rooms", "location_rooms", Duty.ANNOTATE),
-        is_done=has_folder and not without_room,
+        is_done=has_folder and all(with_room),
+        is_optional=has_folder and any(with_room),  # who does not know them all goes on
     )

@@ -375,3 +375,16 @@ def test_the_folder_of_the_guide_is_a_world(db, tmp_path):
         *("water the <plant> in <bed>", "give some water to the <plant> in <bed>"),
         "go to <bed>",
     }
+
+
+def test_the_next_row_begins_like_the_one_before_it(bare, client, superuser):
+    client.force_login(superuser)
+    new = "/w/green/ontology/classes/new/"
+    assert client.post(new, {"token": "plant", "next": "yes"})["Location"].startswith(new)
+    new = "/w/green/grammar/new/"
+    sent = {"nonterminal": "water", "expansion": "water", "next": "yes"}
+    again = client.post(new, sent)["Location"]
+    shown = client.get(again).context["form"]
+    assert again.startswith(new) and shown["nonterminal"].value() == "water"
+    assert not shown["expansion"].value()
+    assert "next" not in client.post(new, {**sent, "expansion": "irrigate"})["Location"]

@@ -2,7 +2,7 @@
 
 A sentence is an instruction where it says one of these. Others are for people alone.
 
-    choose **a link or an option**, press **a button**, open the list of worlds
+    choose **a link or an option**, then **another**, press **a button**, open the list of worlds
     write `a text` into **a field**, write these lines into **a field** with a block behind it
     beside `a thing` write `its kind`
     you see `a text`
@@ -16,6 +16,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import dedent
 from time import monotonic
 
 from playwright.sync_api import Locator, Page, expect
@@ -25,8 +26,8 @@ from tests.browser.arriving import arrive_at, wait_for_swap
 INSTRUCTION = re.compile(
     r"""
     (?P<worlds>open\s+the\s+list\s+of\s+worlds)
-    | (?:choose|press)\s+\*\*(?P<control>.+?)\*\*
-    | write\s+these\s+lines\s+into\s+\*\*(?P<area>.+?)\*\*:\n\n```text\n(?P<lines>.*?)\n```
+    | (?:choose|press|then|and)\s+\*\*(?P<control>.+?)\*\*
+    | write\s+these\s+lines\s+into\s+\*\*(?P<area>.+?)\*\*:\n\n[ ]*```text\n(?P<lines>.*?)\n[ ]*```
     | write\s+`(?P<text>[^`]+)`\s+into\s+\*\*(?P<field>.+?)\*\*
     | beside\s+`(?P<thing>[^`]+)`\s+write\s+`(?P<kind>[^`]+)`
     | you\s+see\s+`(?P<seen>[^`]+)`
@@ -46,12 +47,15 @@ class Effort:
     seconds: float = 0.0
 
 
-def instructions(document: Path) -> Iterator[dict[str, str]]:
-    """Yield the groups of each instruction of a document that are there."""
-    for match in INSTRUCTION.finditer(document.read_text(encoding="utf-8")):
+def instructions(document: Path, heading: str = "") -> Iterator[dict[str, str]]:
+    """Yield the groups of each instruction of a document that are there; of the part below ``heading`` alone."""
+    text = document.read_text(encoding="utf-8")
+    if heading:
+        text = text.partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+    for match in INSTRUCTION.finditer(text):
         groups = {name: value for name, value in match.groupdict().items() if value}
         yield {
-            name: value if name == "lines" else " ".join(value.split())
+            name: dedent(value) if name == "lines" else " ".join(value.split())
             for name, value in groups.items()
         }
 
@@ -67,10 +71,10 @@ class Follower:
     before_each: Callable[[], object] = lambda: None
     take: Callable[[str], object] = lambda name: None
 
-    def follow(self, document: Path) -> Effort:
+    def follow(self, document: Path, heading: str = "") -> Effort:
         self.effort = Effort()
         begun = monotonic()
-        for each in instructions(document):
+        for each in instructions(document, heading):
             self.before_each()
             self._do(each)
             wait_for_swap(self.page)
@@ -97,7 +101,9 @@ class Follower:
 
     def _control(self, name: str) -> Locator:
         page = self.page
-        named = page.get_by_role("link", name=name, exact=True)
+        # A link of the rail has a count behind its name.
+        with_count = re.compile(rf"^{re.escape(name)}( [\d,]+)?$")
+        named = page.get_by_role("link", name=with_count)
         named = named.or_(page.get_by_role("button", name=name, exact=True))
         return (
             named.or_(page.locator("label").get_by_text(name, exact=True))
@@ -112,8 +118,12 @@ class Follower:
 
     def _write(self, name: str, text: str, keys: int) -> None:
         field = self.page.get_by_role("textbox", name=name, exact=True)
-        arrive_at(self.page, field)
-        field.fill(text)
+        choice = self.page.get_by_role("combobox", name=name, exact=True)
+        arrive_at(self.page, field.or_(choice).first)
+        if choice.count():
+            choice.select_option(label=text)
+        else:
+            field.fill(text)
         self.effort.clicks += 1
         self.effort.keys += keys
         self.page.wait_for_timeout(TYPING_MILLISECONDS)

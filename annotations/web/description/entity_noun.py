@@ -48,6 +48,9 @@ class EntityNoun(Noun):
     def asked(self, request: WorldRequest, world: World) -> Mapping[str, Any]:
         return asked_class(request, world)
 
+    def alike(self, row: Entity) -> Mapping[str, str]:
+        return {"entity_class": row.entity_class}
+
     def missing(self, request: WorldRequest, world: World) -> HttpResponse | None:
         return needs_class(request, world)
 

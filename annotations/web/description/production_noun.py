@@ -68,6 +68,9 @@ class ProductionNoun(Noun):
             asked["nonterminal"] = ROOT
         return asked
 
+    def alike(self, row: Production) -> Mapping[str, str]:
+        return {"nonterminal": row.nonterminal, "source": row.source}
+
     def merging(self, world: World, row: Any) -> Mapping[str, Any]:
         return {"check_url": f"{reverse('production_check', args=[world.name])}?row={row.pk}"}
 

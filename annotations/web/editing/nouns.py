@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
+from urllib.parse import urlencode
 
 from django.contrib import messages
 from django.core.exceptions import ValidationError
 from django.http import Http404, HttpResponse
 from django.shortcuts import redirect, render
-from django.urls import URLPattern, path
+from django.urls import URLPattern, path, reverse
 from django_filters import FilterSet
 
 from annotations.editing.edits import Overtaken
@@ -97,6 +98,10 @@ class Noun:
         """Return what the fields of a new row begin with."""
         return {}
 
+    def alike(self, row: Any) -> Mapping[str, str]:
+        """Return what the address of the next new row says after this one: what it is likely to begin with."""
+        return {}
+
     def missing(self, request: WorldRequest, world: World) -> HttpResponse | None:
         """Return the page that says what a world lacks before it can have such a row; None where it lacks nothing."""
         return None
@@ -158,6 +163,9 @@ class Noun:
                     form.add_error(form.key, form.repeated or error.messages)
                 else:
                     tell_saved(request, f"Added {self.title_of(row)}.", remarks)
+                    if "next" in request.POST:
+                        again = reverse(f"{self.kind.name}_new", args=[world.name])
+                        return redirect(f"{again}?{urlencode(self.alike(row))}")
                     return redirect(self.kind.name, world=world.name, pk=row.pk)
             return self._shown(request, world, None, form)
 

@@ -1,4 +1,7 @@
-"""A team's evening before a competition: a world, its folder, its rooms, a sample, a split, a learned part."""
+"""A team's evening before a competition: a world, its folder, its rooms, a sample, a split, a learned part.
+
+Once through all pages with pictures of each, and once by the first steps alone, by clicks and keys.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import re
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from time import monotonic
 from typing import Any
 from zipfile import ZipFile
 
@@ -29,23 +33,30 @@ pytestmark = [
     pytest.mark.django_db(transaction=True),
 ]
 
-FOLDER = Path("competition-real/Incheon2026")
+FOLDERS = Path("competition-real")
+FOLDER = FOLDERS / "Incheon2026"
+OTHER_FOLDER = FOLDERS / "PortugalOpen2026"
 ROOMS = {"laundry table": "laundry", "bed": "bedroom", "sofa": "living room", "sink": "kitchen"}
 COMMANDS = 1_200
 # A whole world is imported, sampled and frozen by one worker.
 JOB_SECONDS = 240
 
 
+def files_of(folder: Path) -> list[Path]:
+    """Return the files of a competition's folder; skip the test where it is not there."""
+    files = [each for each in folder.rglob("*") if each.is_file()]
+    if not files:
+        pytest.skip(f"needs {folder.name} in GPSR_SHARED_DATA")
+    return files
+
+
 @pytest.fixture
 def folder(shared_data) -> bytes:
     """The folder of the world cup in 2026, as a zip archive."""
-    files = [each for each in (shared_data / FOLDER).rglob("*") if each.is_file()]
-    if not files:
-        pytest.skip(f"needs {FOLDER} in GPSR_SHARED_DATA")
     packed = BytesIO()
     with ZipFile(packed, "w") as archive:
-        for each in files:
-            archive.write(each, each.relative_to(shared_data / FOLDER.parent))
+        for each in files_of(shared_data / FOLDER):
+            archive.write(each, each.relative_to(shared_data / FOLDERS))
     return packed.getvalue()
 
 
@@ -253,3 +264,72 @@ def test_an_evening_of_a_team(
     expect(answer.locator(".plan-referent")).to_contain_text(re.compile("them.*Jane"))
 
     assert only_faults(evening.reports) == {}
+
+
+OTHER_ROOMS = {"fridge": "kitchen", "desk": "living room"}
+MOST_CLICKS = 20
+
+
+def test_the_first_steps_lead_through_an_evening(
+    logged_in,
+    live_server,
+    superuser,
+    worker,
+    parse_server,  # noqa: F811
+    shared_data,
+):
+    files_of(shared_data / OTHER_FOLDER)
+    page = logged_in(superuser).new_page()
+    clicks = []
+
+    def click(target: Locator, title: str = "") -> None:
+        target.click()
+        clicks.append(title)
+        if title:
+            arrive(page, title)
+
+    def wait_for_job() -> None:
+        state = page.locator("#job-state .status")
+        expect(state).to_have_text("succeeded", timeout=1000 * JOB_SECONDS)
+
+    begun = monotonic()
+    page.goto(live_server.url)
+    click(page.get_by_role("button", name="New world"), "New world")
+    page.fill("#id_name", "open")
+    click(page.get_by_text("competition", exact=True))
+    click(page.get_by_role("button", name="Create world"))
+    wait_for_job()
+    click(page.get_by_role("button", name="Open open"), "Overview")
+    click(page.get_by_role("button", name="Import the folder"), "Import a competition folder")
+    page.locator("input[webkitdirectory]").set_input_files(shared_data / OTHER_FOLDER)
+    clicks.append("the dialog")
+    click(page.get_by_role("button", name="Import", exact=True))
+    wait_for_job()
+    expect(page.locator(".problem--warning").first).to_be_hidden()  # below one line
+    click(page.get_by_role("button", name="Choose rooms"), "Rooms of locations")
+    guessed = page.locator("main select").evaluate_all(
+        "all => all.filter((each) => each.value).length"
+    )
+    for location, room in OTHER_ROOMS.items():
+        page.get_by_label(location, exact=True).select_option(room)
+        clicks.append(location)
+    click(page.get_by_role("button", name="Save"), "Ontology")
+    assert guessed == 6
+    click(page.locator("#rail a", has_text="Overview"), "Overview")
+    steps = page.locator(".first-steps")
+    expect(steps.get_by_role("button", name=re.compile("^Train"))).to_be_visible()  # rooms are open
+    parse_server.update()
+    click(steps.get_by_role("button", name="Try a command"), "Parse")
+    page.locator("#playground-text").press_sequentially("Could you get me the milk from the fridge")
+    answer = page.locator("#playground-answer")
+    expect(answer.locator(".plan-steps code").first).to_have_text("go_to(fridge)")
+    assert steps_of(answer) == ["bring"]
+    page.fill(
+        "#playground-text",
+        "Head to the kitchen, look for whoever's waving, and tag along with them",
+    )
+    expect(answer.locator(".plan-steps code").first).to_have_text("go_to(kitchen)")
+    wait_for_swap(page)
+    assert steps_of(answer) == ["go", "find", "follow"]
+    print(f"{len(clicks)} clicks, {monotonic() - begun:.0f} seconds")
+    assert len(clicks) <= MOST_CLICKS
