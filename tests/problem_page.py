@@ -59,6 +59,8 @@ INTRODUCTION = """# Problems
 Every refusal of the REST API is a problem document (RFC 9457). Its `code` names the reason for programs. It stays when
 the sentence changes. Take a code that you do not know by its `status`.
 
+*Output of an address that has no row.*
+
 ```json
 {
   "type": "/docs/reference/problems/#doc-not_found",

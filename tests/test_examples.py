@@ -1,7 +1,8 @@
 """The examples that a newcomer meets run as they are, on the starter world as ``make run`` leaves it.
 
-A block of README, guides, REST and the client runs, unless the line above it is one of ``*Needs …*`` (a server, a
-folder, an hour) and ``*Output …*``, for people to read. What needs something is checked by the parsers of its commands.
+A block of any document runs, unless the line above it is one of ``*Needs …*`` (a server, a folder, an hour),
+``*Output …*`` and ``*File …*``, for people to read. What needs something is checked by the parsers of its commands, or
+by the options that its module has. Commands within sentences and tables are checked in the same way.
 """
 
 from __future__ import annotations
@@ -20,9 +21,17 @@ from pathlib import Path
 import pytest
 from django.core.management import call_command, get_commands, load_command_class
 
+from annotations.exchange.predicates_file import read_predicates
+from annotations.exchange.shipped_worlds import SHIPPED_WORLDS
 from annotations.exchange.starter_world import STARTER_WORLD, load_starter_world
+from annotations.language.forms import read_form
+from annotations.language.plans import apply_recipes, default_book, make_plan, usual_places
+from annotations.language.templates import read_generator_folder
 from annotations.models import ApiToken, Entity, World
 from parser_service.models import TrainingRun
+from parser_service.parsers.interface import Knowledge
+from parser_service.parsers.oracle import GrammarOracle
+from tests.annotations.language.ontology_files import read_ontology_folder
 from tests.clients.conftest import CLIENT
 from tests.parser_service.live_server import parse_server  # noqa: F401
 
@@ -30,14 +39,22 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGES = [
     ROOT / "README.md",
     *sorted((ROOT / "docs" / "guides").glob("*.md")),
+    *sorted(ROOT.glob("[A-QS-Z]*.md")),
+    *(path for path in sorted((ROOT / "docs").rglob("*.md")) if path.parent.name != "guides"),
     CLIENT / "README.md",
-    ROOT / "docs" / "reference" / "rest.md",  # last: it changes the world
 ]
-FENCE = re.compile(r"^(?:\*((?:Needs|Output)\b[^*]+)\*\n\n?)?```(\w*)\n(.*?)^```", re.M | re.S)
+PAGES.sort(key=lambda path: path.name == "rest.md")  # last: it changes the world
+FENCE = re.compile(
+    r"^(?:\*((?:Needs|Output|File)\b[^*]+)\*\n\n?)?```([\w-]*)\n(.*?)^```", re.M | re.S
+)
+INDENTED = re.compile(
+    r"^ {4}(?:[A-Z_]+=\S* )*(?:\.venv/bin/|python |gpsr-workbench |pip |make |curl )", re.M
+)
 SHELLS = ("sh", "bash")
-FILES = ("ini", "nginx", "yaml")  # of other programs
+FILES = ("bibtex", "ini", "nginx", "toml", "xml", "yaml")  # of other programs
 LANGUAGES = {*SHELLS, *FILES, "python", "json", "text"}
 MANAGE = ".venv/bin/python manage.py "
+MODULE = re.compile(r"(?<!\S)(?:\.venv/bin/)?python -m ([\w.]+)")
 SITE = "http://localhost:8000"
 ANSWERS = ("the salad bowl", "yes")
 
@@ -59,7 +76,7 @@ class Example:
     @property
     def lines(self) -> list[str]:
         """The commands of a shell block, without comments."""
-        whole = self.text.replace("\\\n", " ").splitlines()
+        whole = self.text.replace("\\\n", "").splitlines()
         return [line for line in whole if line.strip() and not line.startswith("#")]
 
 
@@ -80,7 +97,7 @@ def test_an_example_says_what_it_is(subtests):
         with subtests.test(example.name):
             assert example.language in LANGUAGES
             assert len(example.mark.split()) != 1, "Say what it needs, or of what it is the output."
-            assert example.language != "json" or example.mark.startswith("Output")
+            assert example.language != "json" or example.mark.startswith(("Output", "File"))
             if example in RUN and example.language == "sh":  # nothing else is run here
                 assert all(re.match(rf"curl |{re.escape(MANAGE)}", line) for line in example.lines)
 
@@ -102,8 +119,51 @@ def check_commands(example: Example) -> None:
             command = load_command_class(get_commands()[name], name)
             given = ["x" if each == "…" else each for each in arguments]
             command.create_parser("manage.py", name).parse_args(given)
+        if module := MODULE.search(before):
+            check_options(module[1], before[module.end() :])
         for target in re.findall(r"\bmake (\w+)", before):
             assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.M)
+
+
+def check_options(module: str, words: str) -> None:
+    """Check that a module of ours is there and names each option, itself or in a file beside it."""
+    if module.split(".")[0] not in ("benchmarks", "tests"):
+        return
+    path = ROOT / module.replace(".", "/")
+    path = path.with_suffix(".py") if not path.is_dir() else path / "__main__.py"
+    beside = "".join(each.read_text(encoding="utf-8") for each in path.parent.glob("*.py"))
+    for option in re.findall(r"(?<!\S)\[?(--[a-z-]+)", words.partition(" # ")[0]):
+        assert option == "--help" or f'"{option}"' in beside, f"{module} {option}"
+
+
+def test_commands_within_sentences_and_tables_are_understood(subtests):
+    """Their names and options; what stands for a value may be anything."""
+    names = get_commands()
+    parsers = {}
+    for page in PAGES:
+        text = FENCE.sub("", page.read_text(encoding="utf-8"))
+        for said in re.findall(r"`([^`\n]+)`", text):
+            words = re.sub(r"^(?:\.venv/bin/python )?manage\.py |^gpsr-workbench manage ", "", said)
+            name, *rest = words.split()
+            is_command = words != said or (page.name == "commands.md" and rest and name in names)
+            if not is_command or not name.islower() or name == "help":
+                continue
+            with subtests.test(f"{page.name}: {said}"):
+                assert name in names
+                if name not in parsers:
+                    command = load_command_class(names[name], name)
+                    parsers[name] = command.create_parser("manage.py", name)
+                given = {each for each in rest if re.fullmatch(r"--[a-z-]+", each)}
+                assert given <= set(parsers[name]._option_string_actions)
+
+
+def test_no_command_is_only_indented():
+    """It would not be checked: a fence with its language is."""
+    assert not [
+        (page.name, match[0])
+        for page in PAGES
+        for match in INDENTED.finditer(FENCE.sub("", page.read_text("utf-8")))
+    ]
 
 
 def test_an_example_can_be_read(subtests):
@@ -142,6 +202,33 @@ def newcomer(
     return tmp_path
 
 
+def language_of_the_world() -> dict[str, object]:
+    """What the documents of the pure core call the parts of a world, here of ``competition``."""
+    folder = SHIPPED_WORLDS["competition"].folder
+    ontology, _ = read_ontology_folder(folder)
+    predicates = read_predicates(
+        (folder / "predicates.json").read_bytes(), classes=ontology.classes
+    )
+    categories = read_generator_folder(folder).categories()
+    form = '(bring (λ$1:e (is_a $1 "quince") (at $1 "larder")))'
+    count = '(say (count (λ$1:e (is_a $1 "drinks") (at $1 "larder"))))'
+    greet = '(greet (λ$1:e (person $1) (name $1 "Maria") (at $1 "piano")))'
+    book = default_book()
+    plans = [
+        apply_recipes(
+            make_plan(read_form(each), ontology, predicates), book, usual_places(ontology)
+        )
+        for each in (form, count, greet)
+    ]
+    return {
+        **{"ontology": ontology, "predicates": predicates, "action_names": {}, "book": book},
+        **{"form": read_form(form), "evidence": None, "judge": None},
+        **dict(zip(("first", "second", "third"), plans, strict=True)),
+        "utterance": "My first wish is: bring me the quince. Then greet Maria in the lobby.",
+        "oracle": GrammarOracle(knowledge=Knowledge(ontology=ontology, grammar=categories)),
+    }
+
+
 class Session:
     """Runs the examples of one page, one after the other; those of a language share what they set."""
 
@@ -154,6 +241,7 @@ class Session:
         self.names = {
             "token": os.environ["TOKEN"],
             "run": self.plans.append,
+            **language_of_the_world(),
             "input": lambda _: next(answers),
         }
 

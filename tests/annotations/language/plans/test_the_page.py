@@ -36,7 +36,7 @@ def task_plan(form: str) -> TaskPlan:
 
 def test_its_rows_are_those_of_the_book():
     fences = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    rows = (text.splitlines() for language, text in fences if not language)
+    rows = (text.splitlines() for language, text in fences if language == "text")
     recipes, primitives, at_the_end, *_ = rows
     assert {read_recipe(each) for each in recipes + at_the_end} <= set(default_book().recipes)
     assert {read_primitive(each) for each in primitives} <= set(default_book().primitives)
