@@ -31,6 +31,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
+from annotations.showing.keys import keys_for
 from annotations.showing.listing import Listing, Sort, count_some, render_list
 from annotations.showing.paging import number_in
 from annotations.web.campaigns.submission_filters import SubmissionFilters
@@ -41,8 +42,8 @@ SORTS = {
     "text": Sort("Submission", "text"),
     "status": Sort("Status", "status"),
 }
-KEYS_OF_LIST = [("x", "tick the row, or take the tick away")]
-KEYS = [("a", "accept the submission"), ("r", "reject it")]
+KEYS_OF_LIST = keys_for("tick", "accept", "reject", "undo")
+PAGE_KEYS = keys_for("next", "previous", "accept", "reject", "mend", "edit", "dispute", "undo")
 OTHERS_SHOWN = 30  # of the same contributor
 
 
@@ -170,13 +171,16 @@ def submissions_take_back(request: WorldRequest, world: World) -> HttpResponse:
 
 def _show(request: WorldRequest, row: Submission, error: str = "", status: int = 0) -> HttpResponse:
     others = row.contributor.submissions.answered().exclude(pk=row.pk).select_related("prompt")
+    waiting = waiting_beside(row)
     context = {
         "row": row,
+        "before": waiting.filter(pk__lt=row.pk).values_list("pk", flat=True).last(),
+        "after": waiting.filter(pk__gt=row.pk).values_list("pk", flat=True).first(),
         "other_form": next(
             (flag["evidence"] for flag in row.flags if flag["code"] == FlagCode.OTHER_FORM), ""
         ),
         "error": error,
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         "others": others[:OTHERS_SHOWN],
         "sent": request.POST,
         "most_characters": MOST_CHARACTERS,
@@ -184,6 +188,13 @@ def _show(request: WorldRequest, row: Submission, error: str = "", status: int =
     }
     code = status or (HTTPStatus.UNPROCESSABLE_ENTITY if error else HTTPStatus.OK)
     return render(request, "annotations/campaigns/submission.html", context, status=code)
+
+
+def waiting_beside(row: Submission) -> SubmissionQuerySet:
+    """Return the submissions of the same campaign that wait, in their order."""
+    campaign = row.contributor.campaign
+    waiting = submissions_of(campaign.world).awaiting_moderation()
+    return waiting.filter(contributor__campaign=campaign).order_by("pk")
 
 
 def _say_decided(request: WorldRequest, world: World, rows: Sequence[Submission]) -> None:
@@ -196,9 +207,8 @@ def _say_decided(request: WorldRequest, world: World, rows: Sequence[Submission]
 
 def _to_the_next(world: World, row: Submission) -> HttpResponse:
     """Lead to the next submission of the campaign that waits; to the list without one."""
-    waiting = submissions_of(world).awaiting_moderation()
-    campaign = waiting.filter(contributor__campaign=row.contributor.campaign_id)
-    following = campaign.filter(pk__gt=row.pk).order_by("pk").first() or campaign.first()
+    waiting = waiting_beside(row)
+    following = waiting.filter(pk__gt=row.pk).first() or waiting.first()
     if following is None:
         return redirect(f"{reverse('submissions', args=[world.name])}?status=pending")
     return redirect("submission", world=world.name, pk=following.pk)

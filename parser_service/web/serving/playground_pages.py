@@ -19,6 +19,7 @@ from annotations.models import Duty, Entity, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import ready_templates
+from annotations.showing.keys import keys_for
 from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
@@ -35,7 +36,7 @@ from parser_service.web.serving.heard_pieces import heard_pieces
 
 MOST_OFFERED = 50  # runs
 OWN_EXAMPLES = 3  # as many as there are keys for, beside the texts of the paper
-KEYS = (("1–9", "take an example"),)
+PAGE_KEYS = keys_for("digit")
 
 
 @world_view(Duty.VIEW)
@@ -60,7 +61,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "chosen": parser or run or (opening.pk if opening else ""),
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         "asks_beside": bool(text and shown.get("chosen_beside")),
         **shown,
         **_asking(world),
