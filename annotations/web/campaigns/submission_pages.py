@@ -193,8 +193,9 @@ def _show(request: WorldRequest, row: Submission, error: str = "", status: int =
 def waiting_beside(row: Submission) -> SubmissionQuerySet:
     """Return the submissions of the same campaign that wait, in their order."""
     campaign = row.contributor.campaign
-    waiting = submissions_of(campaign.world).awaiting_moderation()
-    return waiting.filter(contributor__campaign=campaign).order_by("pk")
+    theirs = Contributor.objects.filter(pk=OuterRef("contributor"), campaign=campaign)
+    waiting = Submission.objects.filter(Exists(theirs)).answered().awaiting_moderation()
+    return waiting.exclude(kind=SubmissionKind.CHECK).order_by("pk")
 
 
 def _say_decided(request: WorldRequest, world: World, rows: Sequence[Submission]) -> None:
