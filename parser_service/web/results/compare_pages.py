@@ -66,8 +66,8 @@ class ComparedFilters(FilteredList):
 def compare(request: WorldRequest, world: World) -> HttpResponse:
     """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from.
 
-    A URL that names one run leads to that with the reader's baseline, one that names none to that of the two best, or
-    of the baseline and the best beside it.
+    One run alone is shown by its slices and confusions; with a baseline of the reader, its URL leads to both. A URL
+    that names none leads to that of the two best, or of the baseline and the best beside it.
     """
     part = request.GET.get("part", "")
     part = part if part in PARTS else default_part(world, named_keys(request.GET))
@@ -89,7 +89,7 @@ def compare(request: WorldRequest, world: World) -> HttpResponse:
         "suggestion_url": url_with_runs(request, choice.suggested),
         "slice_query": slice_query(world, request.GET),
     }
-    if len(choice.runs) > 1:
+    if choice.runs:
         context |= comparison_of(request, world, choice, filters, measure)
     return render(request, "parser_service/results/compare.html", context)
 
@@ -155,7 +155,7 @@ def comparison_of(
         "slots": slots,
         "analysis": analysis_of(choice.runs[place]) if slots is None else None,
         "compared": compared,
-        "configuration": difference_of(choice.runs),
+        "configuration": difference_of(choice.runs) if len(choice.runs) > 1 else None,
         "accuracies": list(
             zip(LETTERS, choice.runs, accuracies_of(compared, addresses), strict=False)
         ),

@@ -382,3 +382,9 @@ def test_a_run_of_another_world_is_no_baseline(sample, second, anna):
 
 def compare_order(url):
     return list(map(int, re.findall(r"run=(\d+)", url)))
+
+
+def test_one_run_alone_is_shown_by_its_slices_and_confusions(sample, anna):
+    context = compare(anna, sample.run).context
+    assert context["pairs"] == [] and context["configuration"] is None
+    assert sum(row.count for row in context["heat"].rows) == context["compared"].count
