@@ -171,7 +171,7 @@ def submissions_take_back(request: WorldRequest, world: World) -> HttpResponse:
 
 def _show(request: WorldRequest, row: Submission, error: str = "", status: int = 0) -> HttpResponse:
     others = row.contributor.submissions.answered().exclude(pk=row.pk).select_related("prompt")
-    waiting = waiting_beside(row)
+    waiting = submissions_of(row.contributor.campaign.world).awaiting_moderation().order_by("pk")
     context = {
         "row": row,
         "before": waiting.filter(pk__lt=row.pk).values_list("pk", flat=True).last(),
@@ -190,14 +190,6 @@ def _show(request: WorldRequest, row: Submission, error: str = "", status: int =
     return render(request, "annotations/campaigns/submission.html", context, status=code)
 
 
-def waiting_beside(row: Submission) -> SubmissionQuerySet:
-    """Return the submissions of the same campaign that wait, in their order."""
-    campaign = row.contributor.campaign
-    theirs = Contributor.objects.filter(pk=OuterRef("contributor"), campaign=campaign)
-    waiting = Submission.objects.filter(Exists(theirs)).answered().awaiting_moderation()
-    return waiting.exclude(kind=SubmissionKind.CHECK).order_by("pk")
-
-
 def _say_decided(request: WorldRequest, world: World, rows: Sequence[Submission]) -> None:
     first = Submission.objects.get(pk=rows[0].pk)
     assert first.decided_at is not None
@@ -208,8 +200,9 @@ def _say_decided(request: WorldRequest, world: World, rows: Sequence[Submission]
 
 def _to_the_next(world: World, row: Submission) -> HttpResponse:
     """Lead to the next submission of the campaign that waits; to the list without one."""
-    waiting = waiting_beside(row)
-    following = waiting.filter(pk__gt=row.pk).first() or waiting.first()
+    waiting = submissions_of(world).awaiting_moderation()
+    campaign = waiting.filter(contributor__campaign=row.contributor.campaign_id)
+    following = campaign.filter(pk__gt=row.pk).order_by("pk").first() or campaign.first()
     if following is None:
         return redirect(f"{reverse('submissions', args=[world.name])}?status=pending")
     return redirect("submission", world=world.name, pk=following.pk)
