@@ -121,6 +121,7 @@ urlpatterns = [
     path("results/measure/", result_pages.results_measure, name="results_measure"),
     path("results/table/", result_pages.results_table, name="results_table"),
     path("compare/", compare_pages.compare, name="compare"),
+    path("compare/baseline/", compare_pages.compare_baseline, name="compare_baseline"),
     path("slices/", slice_pages.slices, name="slices"),
     path("slices/<int:pk>/rename/", slice_pages.slice_rename, name="slice_rename"),
     path("slices/<int:pk>/delete/", slice_pages.slice_delete, name="slice_delete"),

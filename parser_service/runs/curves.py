@@ -26,6 +26,12 @@ def accuracy_curve(epochs: Sequence[EpochMetric]) -> dict[str, Any]:
     return _lines(epochs, [{"name": "validation", "values": values}], y)
 
 
+def seconds_curve(epochs: Sequence[EpochMetric]) -> dict[str, Any]:
+    """Return how many seconds each epoch took."""
+    values = [round(each.seconds, 2) for each in epochs]
+    return _lines(epochs, [{"name": "training", "values": values}], {"label": "time", "unit": "s"})
+
+
 def will_have_curves(run: TrainingRun) -> bool:
     """Tell whether the parser of ``run`` trains in epochs."""
     return bool({"epochs", "steps"} & set(run.config))
@@ -36,4 +42,4 @@ def _lines(epochs: Sequence[EpochMetric], series: list[Any], y: dict[str, Any]) 
     return {"kind": "lines", "x": x, "series": series, "y": y}
 
 
-CURVES = {"loss": loss_curves, "accuracy": accuracy_curve}
+CURVES = {"loss": loss_curves, "accuracy": accuracy_curve, "seconds": seconds_curve}

@@ -1,6 +1,6 @@
 // The label audit by keyboard: the row that has the focus is shown, and one key decides about it.
 import { enhanceBy } from "./modules.js";
-import { keyOf, READING, TYPING } from "./typing.js";
+import { actionOf, keyOf, READING, sayIgnored, TYPING } from "./typing.js";
 
 const ROW = "tr[data-finding]";
 
@@ -14,7 +14,7 @@ let isListening = false;
 export function enhance() {
   if (!isListening) {
     isListening = true;
-    document.addEventListener("keydown", onKey, true); // before the keys of all pages: c copies there
+    document.addEventListener("keydown", onKey, true); // before the keys of all pages
     document.addEventListener("focusin", onFocus);
   }
   if (document.activeElement === document.body) rowShown()?.focus({ preventScroll: true });
@@ -56,20 +56,22 @@ function leaveField(event, key) {
 let decidedAt = -Infinity;
 
 // Two presses in a row are one decision: nobody has read the next label yet.
-function press(key) {
-  const button = shown()?.querySelector(`[data-key="${key}"]`);
-  if (!button || performance.now() - decidedAt < READING) return;
+function press(button, event) {
+  if (!button) return;
+  if (performance.now() - decidedAt < READING) return sayIgnored(event);
   decidedAt = performance.now();
   button.click();
 }
 
+const ofAction = (action) => shown()?.querySelector(`[data-action="${action}"]`);
+
 const actions = {
-  a: () => press("a"),
-  c: () => (shown()?.querySelector('[data-key="c"]') ? press("c") : openEditor()),
-  x: () => press("x"),
-  e: openEditor,
-  r: () => document.getElementById("audit-reason")?.focus(),
-  z: () => document.querySelector("form[data-take-back]")?.requestSubmit(),
+  digit: (event) => press(shown()?.querySelector(`[data-digit="${keyOf(event)}"]`), event),
+  accept: (event) => press(ofAction("accept"), event),
+  reject: (event) => press(ofAction("reject"), event),
+  edit: openEditor,
+  note: () => document.getElementById("audit-reason")?.focus(),
+  undo: () => document.querySelector("form[data-take-back]")?.requestSubmit(),
 };
 
 // A key that comes while the next label is on its way is not for that one: nobody has read it yet.
@@ -81,8 +83,10 @@ function onKey(event) {
     if (key === "Enter" || key === "Escape") leaveField(event, key);
     return;
   }
-  if ("jk".includes(key) && !event.target.matches(ROW)) focusRow();
-  if (event.repeat || !Object.hasOwn(actions, key)) return;
+  const action = actionOf(event);
+  if (["next", "previous"].includes(action) && !event.target.matches(ROW)) focusRow();
+  if (event.repeat || !Object.hasOwn(actions, action)) return;
   event.preventDefault();
-  if (!isBusy()) actions[key]();
+  if (isBusy()) sayIgnored(event);
+  else actions[action](event);
 }

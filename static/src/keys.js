@@ -1,8 +1,8 @@
-// Keys: j and k move through the rows of a table, Enter opens, n and p turn the page, / searches, ? lists the keys,
-// Ctrl+Enter sends a form.
+// The keys of all pages: they move through the rows of a table and turn its pages, search, undo, and press what a page
+// names by `data-page-action`. Which key does what stands in annotations/showing/keys.py. Ctrl+Enter sends a form.
 import { copyForm } from "./forms.js";
 import { pressSend } from "./sending.js";
-import { isCtrlEnter, keyOf } from "./typing.js";
+import { actionOf, isCtrlEnter, keyOf, READING, sayIgnored } from "./typing.js";
 
 const TYPING = "input:not([type=checkbox], [type=radio]), textarea, select, [contenteditable], .cm-editor";
 
@@ -40,14 +40,25 @@ function dialog(isOpen) {
 const turn = (direction) => document.querySelector(`main a[rel=${direction}]`)?.click();
 
 const actions = {
-  j: () => moveBy(1),
-  k: () => moveBy(-1),
-  n: () => turn("next"),
-  p: () => turn("prev"),
-  "/": search,
-  "?": () => dialog(true),
-  c: () => copyForm(currentRow()?.querySelector("[data-form]") ?? document.querySelector("[data-tools]")),
+  next: () => moveBy(1),
+  previous: () => moveBy(-1),
+  next_page: () => turn("next"),
+  previous_page: () => turn("prev"),
+  search,
+  keys: () => dialog(true),
+  copy: () => copyForm(currentRow()?.querySelector("[data-form]") ?? document.querySelector("[data-tools]")),
 };
+
+// A decision that comes sooner is about the page before: nobody has read this one yet.
+const DECISIONS = ["accept", "reject"];
+const shownAt = performance.now();
+
+// What a page has for an action: a button or a link is pressed, a field gets the focus.
+function onThePage(action) {
+  const element = action && document.querySelector(`[data-page-action="${action}"]`);
+  if (!element) return null;
+  return () => (element.matches("input, textarea") ? element.focus() : element.click());
+}
 
 /** Whether a key belongs to a field or a dialog, and is no command. */
 export const isTyping = (event) => Boolean(event.target.closest(TYPING) || document.querySelector("dialog[open]"));
@@ -60,16 +71,20 @@ function onKey(event) {
     event.target.blur();
   }
   if (isTyping(event)) return;
-  if (key === "Enter" && event.target === currentRow()) {
+  const action = actionOf(event);
+  const ofPage = onThePage(action);
+  if (action === "open" && event.target === currentRow()) {
     event.preventDefault();
     open(event.target);
-  } else if (key === "x" && currentRow()?.querySelector("input[type=checkbox]")) {
+  } else if (action === "tick" && currentRow()?.querySelector("input[type=checkbox]")) {
     currentRow().querySelector("input[type=checkbox]").click();
-  } else if (document.querySelector(`[data-page-key="${CSS.escape(key)}"]`)) {
-    document.querySelector(`[data-page-key="${CSS.escape(key)}"]`).click();
-  } else if (Object.hasOwn(actions, key)) {
+  } else if (ofPage) {
     event.preventDefault();
-    actions[key]();
+    if (DECISIONS.includes(action) && performance.now() - shownAt < READING) sayIgnored(event);
+    else if (!event.repeat) ofPage();
+  } else if (Object.hasOwn(actions, action)) {
+    event.preventDefault();
+    actions[action]();
   }
 }
 

@@ -4,7 +4,7 @@ import { enhanceBy } from "./modules.js";
 import { onFormText } from "./notation.js";
 import { readDraft } from "./draft-storage.js";
 import { AnswerQueue } from "./label-queue.js";
-import { keyOf, READING, TYPING } from "./typing.js";
+import { actionOf, keyOf, READING, sayIgnored, TYPING } from "./typing.js";
 
 // The page's other modules look at what came in, as they do after a swap of htmx.
 function fill(place, html) {
@@ -38,7 +38,8 @@ class LabelPage {
     );
     page.addEventListener("submit", (event) => this.onSubmit(event));
     page.addEventListener("click", (event) => this.onClick(event));
-    document.addEventListener("keydown", (event) => this.onKey(event));
+    document.addEventListener("keydown", (event) => this.onKey(event), true); // before the keys of all pages
+    document.addEventListener("keydown", (event) => this.onEscape(event));
     this.begin();
     this.fetchNext();
   }
@@ -254,17 +255,21 @@ class LabelPage {
     this.item?.querySelector("[data-label-panel-place]").replaceChildren();
   }
 
+  onEscape(event) {
+    if (keyOf(event) !== "Escape" || event.defaultPrevented || document.querySelector("dialog[open]")) return;
+    this.closePanel();
+  }
+
+  // A key that comes before the utterance can be read is not for it: nothing is done, and that is said.
   onKey(event) {
-    const key = keyOf(event);
-    if (!key || document.querySelector("dialog[open]")) return;
-    if (key === "Escape") return event.defaultPrevented || this.closePanel();
-    if (event.repeat || event.defaultPrevented || event.target.closest(TYPING)) return;
-    const opens = this.isAsking && { e: "edit", d: "dispute", m: "mend" }[key];
-    const button = this.isAsking && /^[1-9usb]$/.test(key) && this.item.querySelector(`[data-key="${key}"]`);
-    if (opens) this.openPanel(opens);
-    else if (button) button.click();
-    else if (key === "z") this.takeLastBack();
-    else return;
+    const action = actionOf(event);
+    if (!action || event.repeat || event.target.closest(TYPING) || document.querySelector("dialog[open]")) return;
+    const button = action === "digit" ? `[data-digit="${keyOf(event)}"]` : `[data-action="${action}"]`;
+    const pressed = this.item?.querySelector(button);
+    if (action === "undo") this.takeLastBack();
+    else if (!pressed) return;
+    else if (this.isAsking) pressed.click();
+    else sayIgnored(event);
     event.preventDefault();
   }
 

@@ -1,7 +1,5 @@
 // The review page by keyboard: one answer of the example has the focus, and one key says why it is wrong.
-import { keyOf, TYPING } from "./typing.js";
-
-const FOLDS = { t: "tree", b: "beam" };
+import { actionOf, keyOf, sayIgnored, TYPING } from "./typing.js";
 
 let isListening = false;
 let focused = ""; // the run whose answer has the focus, from example to example
@@ -119,8 +117,8 @@ function moveBy(step) {
   to.scrollIntoView({ block: "nearest", inline: "nearest" });
 }
 
-const press = (key, place = document.getElementById("list")) =>
-  place?.querySelector(`[data-key="${key}"]:not([disabled])`)?.click();
+const press = (action, place = document.getElementById("list")) =>
+  place?.querySelector(`[data-action="${action}"]:not([disabled])`)?.click();
 
 function unfold(name) {
   const fold = shown()?.querySelector(`[data-fold="${name}"]`);
@@ -143,34 +141,28 @@ function openFilters() {
 }
 
 const actions = {
-  j: () => press("j"),
-  k: () => press("k"),
-  w: () => press("w"),
-  h: () => moveBy(-1),
-  l: () => moveBy(1),
-  ArrowLeft: () => moveBy(-1),
-  ArrowRight: () => moveBy(1),
-  n: () => shown()?.querySelector("[data-note]")?.focus(),
-  g: openDoubt,
-  u: () => press("u", shown()),
-  z: () => press("u", shown()),
-  Enter: () => press("Enter", shown()),
-  t: () => unfold(FOLDS.t),
-  b: () => unfold(FOLDS.b),
-  v: showAll,
-  a: () => document.getElementById("review-add")?.focus(),
-  f: openFilters,
-  e: () => press("e", current()),
-  q: () => press("q", current()),
+  next: () => press("next"),
+  previous: () => press("previous"),
+  differ: () => press("differ"),
+  left: () => moveBy(-1),
+  right: () => moveBy(1),
+  note: () => shown()?.querySelector("[data-note]")?.focus(),
+  dispute: openDoubt,
+  undo: () => press("undo", shown()),
+  accept: () => press("accept", shown()),
+  tree: () => unfold("tree"),
+  candidates: () => unfold("beam"),
+  all: showAll,
+  beside: () => document.getElementById("review-add")?.focus(),
+  filters: openFilters,
+  edit: () => press("edit", current()),
+  queue: () => press("queue", current()),
 };
 
-function actionOf(event, key) {
-  const isOnControl = event.target.closest("a, button, summary");
-  if (key === "Enter" && isOnControl) return null;
-  if (Object.hasOwn(actions, key)) return actions[key];
-  const palette = document.querySelector("[data-review-palette]");
-  const hasKey = /^[0-9=-]$/.test(key) && palette?.querySelector(`[data-key="${key}"]`);
-  return hasKey ? () => press(key, palette) : null;
+function whatToDo(event, action) {
+  if (Object.hasOwn(actions, action)) return actions[action];
+  const tag = action === "digit" && document.querySelector(`[data-review-palette] [data-digit="${keyOf(event)}"]`);
+  return tag ? () => tag.disabled || tag.click() : null;
 }
 
 function leaveField(event, key) {
@@ -192,13 +184,16 @@ function onKey(event) {
     if (key === "Enter" || key === "Escape") leaveField(event, key);
     return;
   }
-  const action = actionOf(event, key);
-  if (!action) return;
+  const action = actionOf(event);
+  const doIt = whatToDo(event, action);
+  if (!doIt) return;
   event.preventDefault();
-  if (event.repeat && !"jk".includes(key)) return;
-  if (!busy()) action();
+  const isStep = ["next", "previous"].includes(action);
+  if (event.repeat && !isStep) return;
+  if (!busy()) doIt();
+  else if (!isStepping() || isStep) waiting.push(doIt);
   // A tag that comes while the next example is on its way is not for that one: nobody has read it yet.
-  else if (!isStepping() || "jk".includes(key)) waiting.push(action);
+  else sayIgnored(event);
 }
 
 function goOn() {

@@ -1,7 +1,7 @@
 // Suggested texts for a field: choosing one writes it there, and what is written there shows which one is chosen.
 // The digits choose while nobody types.
 import { isTyping } from "./keys.js";
-import { keyOf } from "./typing.js";
+import { actionOf, keyOf } from "./typing.js";
 
 const RADIOS = "[data-suggestions] input[type=radio]";
 const fieldOf = (radio) => document.getElementById(radio.closest("[data-suggestions]").dataset.suggestions);
@@ -32,9 +32,8 @@ document.addEventListener("change", (event) => {
 });
 
 document.addEventListener("keydown", (event) => {
-  const key = keyOf(event);
-  if (event.defaultPrevented || !/^[1-9]$/.test(key) || isTyping(event)) return;
-  const radio = document.querySelectorAll(RADIOS)[Number(key) - 1];
+  if (event.defaultPrevented || actionOf(event) !== "digit" || isTyping(event)) return;
+  const radio = document.querySelectorAll(RADIOS)[Number(keyOf(event)) - 1];
   if (!radio) return;
   event.preventDefault();
   radio.focus();

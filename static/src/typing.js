@@ -29,6 +29,26 @@ export function keyOf(event) {
   return key;
 }
 
+let actions; // key → what it does, on every page (annotations/showing/keys.py)
+
+/** What a key does, by its name in the one table of keys; empty where it does nothing. */
+export function actionOf(event) {
+  actions ??= JSON.parse(document.getElementById("keys")?.dataset.actions ?? "{}");
+  const key = keyOf(event);
+  return Object.hasOwn(actions, key) ? actions[key] : "";
+}
+
+const IGNORED_MS = 3000;
+
+/** Say that a key was not taken, since it came before anybody can have read what it would be about. */
+export function sayIgnored(event) {
+  const note = document.querySelector("[data-key-ignored]");
+  if (!note) return;
+  note.textContent = `${keyOf(event)} came too soon. Press it again.`;
+  clearTimeout(note.timer);
+  note.timer = setTimeout(() => (note.textContent = ""), IGNORED_MS);
+}
+
 const inCase = (letter, isCapital) => (isCapital ? letter.toUpperCase() : letter.toLowerCase());
 
 /** Whether a key writes this character: also with AltGr, where a keyboard has it there. */

@@ -31,6 +31,7 @@ from annotations.models.corpus import MOST_CHARACTERS
 from annotations.models.queueing import LONGEST_REASON
 from annotations.people.access import WRITE, WorldRequest, world_view
 from annotations.people.allowances import may_take_long
+from annotations.showing.keys import keys_for
 from annotations.showing.listing import Listing, Sort, count_some, render_list
 from annotations.showing.paging import number_in
 from annotations.web.campaigns.submission_filters import SubmissionFilters
@@ -41,8 +42,8 @@ SORTS = {
     "text": Sort("Submission", "text"),
     "status": Sort("Status", "status"),
 }
-KEYS_OF_LIST = [("x", "tick the row, or take the tick away")]
-KEYS = [("a", "accept the submission"), ("r", "reject it")]
+KEYS_OF_LIST = keys_for("tick", "accept", "reject", "undo")
+PAGE_KEYS = keys_for("next", "previous", "accept", "reject", "mend", "edit", "dispute", "undo")
 OTHERS_SHOWN = 30  # of the same contributor
 
 
@@ -170,13 +171,16 @@ def submissions_take_back(request: WorldRequest, world: World) -> HttpResponse:
 
 def _show(request: WorldRequest, row: Submission, error: str = "", status: int = 0) -> HttpResponse:
     others = row.contributor.submissions.answered().exclude(pk=row.pk).select_related("prompt")
+    waiting = submissions_of(row.contributor.campaign.world).awaiting_moderation().order_by("pk")
     context = {
         "row": row,
+        "before": waiting.filter(pk__lt=row.pk).values_list("pk", flat=True).last(),
+        "after": waiting.filter(pk__gt=row.pk).values_list("pk", flat=True).first(),
         "other_form": next(
             (flag["evidence"] for flag in row.flags if flag["code"] == FlagCode.OTHER_FORM), ""
         ),
         "error": error,
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         "others": others[:OTHERS_SHOWN],
         "sent": request.POST,
         "most_characters": MOST_CHARACTERS,

@@ -10,6 +10,7 @@ from django.utils.html import format_html, format_html_join
 from annotations.models import World
 from annotations.people.access import PageRequest
 from annotations.rows.row_kinds import EditableKind
+from annotations.showing.keys import KEYS
 
 
 def say_with_undo(request: PageRequest, sentence: str, address: str, **fields: object) -> None:
@@ -17,10 +18,11 @@ def say_with_undo(request: PageRequest, sentence: str, address: str, **fields: o
     values = {"csrfmiddlewaretoken": get_token(request), **fields}
     hidden = format_html_join("", '<input type="hidden" name="{}" value="{}">', values.items())
     undo = format_html(
-        '<form method="post" action="{}">{}<button type="submit" class="small-button">Undo'
-        "</button></form>",
+        '<form method="post" action="{}">{}<button type="submit" class="small-button" '
+        'data-page-action="undo" aria-keyshortcuts="{}">Undo</button></form>',
         address,
         hidden,
+        KEYS["undo"].keys[0],
     )
     messages.success(request, format_html("{} {}", sentence, undo))
 

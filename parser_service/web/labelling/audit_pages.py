@@ -28,6 +28,7 @@ from annotations.models import (
 )
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.occurrences import examples_of_pair
+from annotations.showing.keys import keys_for
 from annotations.showing.listing import Listing, Sort, render_list
 from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
@@ -39,15 +40,7 @@ from parser_service.web.labelling.audit_forms import AuditForm
 SORTS = {"rank": Sort("No.", "rank", is_number=True), "text": Sort("Utterance", "text")}
 LAST_SHOWN = 5
 MOST_SPLITS = 10
-KEYS = (
-    ("j k", "next label, previous label"),
-    ("a", "keep the label as it is"),
-    ("c", "correct it: take the offered form"),
-    ("e", "write another form"),
-    ("x", "exclude the pair from new splits"),
-    ("r", "give a reason"),
-    ("z", "take the last decision back"),
-)
+PAGE_KEYS = keys_for("next", "previous", "digit", "accept", "reject", "edit", "note", "undo")
 
 
 @never_cache
@@ -68,7 +61,7 @@ def audit(request: WorldRequest, world: World) -> HttpResponse:
         "precision": precision_of(world),
         "job": world.jobs.filter(kind=JobKind.AUDIT).first(),
         "audit_form": AuditForm(),
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         **_context_of(request, finding),
     }
     return render_list(request, "parser_service/labelling/audit.html", context)

@@ -26,6 +26,7 @@ from annotations.labelling.label_queue import last_labels, next_utterance, progr
 from annotations.language.texts import Refusal, find_words
 from annotations.models import Duty, Entity, Label, Origin, Utterance, Verdict, World
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
+from annotations.showing.keys import keys_for
 from annotations.showing.listing import Listing
 from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
@@ -35,6 +36,9 @@ from parser_service.labelling.label_candidates import PERSON, awaited_parser, ca
 
 MOST_ENTITIES = 1_000  # offered where somebody says what words name
 MOST_WITHOUT = 50
+PAGE_KEYS = keys_for(
+    *("digit", "edit", "unknown", "skip", "dispute", "mend", "undo", "candidates", "guidelines")
+)
 
 
 @never_cache
@@ -47,6 +51,7 @@ def label_page(request: WorldRequest, world: World) -> HttpResponse:
     names = entities.values_list("text", "entity_class").distinct()[:MOST_ENTITIES]
     context = {
         "listing": listing,
+        "page_keys": PAGE_KEYS,
         "entities": [f"{text} ({entity_class})" for text, entity_class in names],
         **_strip(request, world),
         **_item(request, row),

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from django.http import HttpResponse
+from django.http import HttpResponse, QueryDict
 from django.shortcuts import redirect, render
+from django.urls import reverse
 
 from annotations.language.corpus import Criterion
 from annotations.models import Duty, World
-from annotations.people.access import PageRequest, WorldRequest, world_view
+from annotations.people.access import NOTHING, WRITE, PageRequest, WorldRequest, world_view
 from annotations.showing.listing import FilteredList
+from annotations.showing.paging import number_in
 from parser_service.models import Prediction, TrainingRun
 from parser_service.models.evaluations import ShownScore
 from parser_service.results.addresses import Addresses
 from parser_service.results.breakdown import accuracies_of, break_down, break_down_by_slices
 from parser_service.results.compared import compare_on
 from parser_service.results.comparison_tables import confusion_table, pair_rows, win_matrix
+from parser_service.results.configurations import difference_of
 from parser_service.results.measures import OF_EXAMPLES, Measure
 from parser_service.results.prediction_filters import PredictionFilters
 from parser_service.results.result_choices import default_part
@@ -63,17 +66,20 @@ class ComparedFilters(FilteredList):
 def compare(request: WorldRequest, world: World) -> HttpResponse:
     """Compare the runs that the URL names on the slice that it chooses, or offer runs to choose from.
 
-    A URL that names no run leads to that of the two best.
+    One run alone is shown by its slices and confusions; with a baseline of the reader, its URL leads to both. A URL
+    that names none leads to that of the two best, or of the baseline and the best beside it.
     """
     part = request.GET.get("part", "")
     part = part if part in PARTS else default_part(world, named_keys(request.GET))
     choice = choose_runs(world, request.GET, part)
-    if "run" not in request.GET and choice.opening:
-        return redirect(f"{request.path}{url_with_runs(request, choice.opening)}")
+    baseline = baseline_of(request, world)
+    if opening := opening_runs(world, choice, baseline, is_named="run" in request.GET):
+        return redirect(f"{request.path}{url_with_runs(request, opening)}")
     filters = ComparedFilters(request)
     measure = measure_of(request)
     context = {
         "choice": choice,
+        "baseline": baseline,
         "parts": PARTS,
         "filters": filters,
         "lettered": list(zip(LETTERS, choice.runs, strict=False)),
@@ -83,9 +89,46 @@ def compare(request: WorldRequest, world: World) -> HttpResponse:
         "suggestion_url": url_with_runs(request, choice.suggested),
         "slice_query": slice_query(world, request.GET),
     }
-    if len(choice.runs) > 1:
+    if choice.runs:
         context |= comparison_of(request, world, choice, filters, measure)
     return render(request, "parser_service/results/compare.html", context)
+
+
+@world_view(Duty.VIEW, WRITE, does=NOTHING)
+def compare_baseline(request: WorldRequest, world: World) -> HttpResponse:
+    """Pin a run as the baseline of what the reader compares here, or unpin it; ``query`` is the page's address."""
+    query = QueryDict(request.POST.get("query", ""), mutable=True)
+    run = world.runs.succeeded().filter(pk=number_in(request.POST.get("run", ""))).first()
+    request.session[_baseline_key(world)] = run.pk if run else None
+    if run:
+        others = [key for key in named_keys(query) if key != run.pk]
+        query.setlist("run", [str(key) for key in (run.pk, *others)])
+    return redirect(f"{reverse('compare', args=[world.name])}?{query.urlencode()}")
+
+
+def baseline_of(request: WorldRequest, world: World) -> TrainingRun | None:
+    """Return the run that the reader has pinned in this world; it stays until they unpin it or log out."""
+    key = request.session.get(_baseline_key(world))
+    return world.runs.succeeded().filter(pk=key).first() if key else None
+
+
+def _baseline_key(world: World) -> str:
+    return f"baseline_{world.pk}"
+
+
+def opening_runs(
+    world: World, choice: RunChoice, baseline: TrainingRun | None, is_named: bool
+) -> list[TrainingRun]:
+    """Return the runs to go on to from an address that names fewer than two; none where it stays as it is."""
+    if baseline is None or len(choice.runs) > 1:
+        return [] if is_named else choice.opening
+    beside = [run for run in choice.runs if run != baseline]
+    if not beside:
+        offered = choose_runs(world, QueryDict(f"run={baseline.pk}"), choice.part).offered
+        ranked = sorted(offered, key=lambda each: -each.accuracy)
+        beside = [each.run for each in ranked if each.run != baseline][:1]
+    is_of_one_split = all(run.split_id == baseline.split_id for run in beside)
+    return [baseline, *beside] if beside and is_of_one_split else []
 
 
 def measure_of(request: PageRequest) -> Measure:
@@ -112,6 +155,7 @@ def comparison_of(
         "slots": slots,
         "analysis": analysis_of(choice.runs[place]) if slots is None else None,
         "compared": compared,
+        "configuration": difference_of(choice.runs) if len(choice.runs) > 1 else None,
         "accuracies": list(
             zip(LETTERS, choice.runs, accuracies_of(compared, addresses), strict=False)
         ),

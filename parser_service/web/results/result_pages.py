@@ -21,7 +21,7 @@ from parser_service.web.results.result_files import results_file
 
 @world_view(Duty.VIEW)
 def results(request: WorldRequest, world: World) -> HttpResponse:
-    """Show the accuracy tables, one per protocol."""
+    """Show the accuracy table, with a group of rows for each protocol."""
     context = results_of(request, world)
     context["answerer"] = answerer_tables(world, context["chosen"], context["part"])
     return render(request, "parser_service/results/results.html", context)

@@ -19,6 +19,7 @@ from annotations.language.corpus import Part
 from annotations.language.texts import Refusal
 from annotations.models import Duty, Example, World
 from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.showing.keys import KEYS, keys_for
 from annotations.showing.listing import Listing, Sort, render_list
 from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
@@ -32,23 +33,10 @@ from parser_service.reviews.world_categories import ensure_categories
 from parser_service.serving.default_runs import opening_run
 
 # What the first categories are tagged with; later ones are clicked.
-CATEGORY_KEYS = "1234567890-="
-KEYS = (
-    ("j k", "next example, previous example"),
-    ("h l", "answer of the run before, of the run after; ← and → too"),
-    ("1 – 9", "tag the answer with this error category; 0, - and = for the next ones"),
-    ("Enter", "accept the category that is proposed"),
-    ("u", "take your tag back; z too"),
-    ("n", "write a note on the answer"),
-    ("f", "open the filters"),
-    ("w", "only where the runs differ, or everywhere again"),
-    ("g", "the label is wrong: send it to the work queue"),
-    ("q", "open the work queue, once something was sent there"),
-    ("a", "choose another run to show beside them"),
-    ("t", "show the difference as a tree"),
-    ("b", "show all candidates of the answer"),
-    ("v", "show all of a long utterance and its forms"),
-    ("e", "edit the utterance, and see what each run answers then"),
+CATEGORY_KEYS = KEYS["digit"].keys
+PAGE_KEYS = keys_for(
+    *("next", "previous", "left", "right", "digit", "accept", "undo", "note", "edit", "dispute"),
+    *("queue", "filters", "differ", "beside", "tree", "candidates", "all"),
 )
 
 MOST_RUNS = 6
@@ -76,7 +64,7 @@ def review(request: WorldRequest, world: World) -> HttpResponse:
     context = {
         "runs": runs,
         "listing": listing,
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         "case": None,
     }
     if example is not None:

@@ -15,6 +15,7 @@ from django_htmx.http import replace_url
 from annotations.models import Duty, Example, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
+from annotations.showing.form_presentation import form_of
 from annotations.showing.own_entities import OwnEntities
 from annotations.showing.paging import number_in
 from parser_service.models import TrainingRun, Tryout
@@ -41,6 +42,17 @@ class TriedAnswer:
     @property
     def form(self) -> str:
         return self.answers[0]["form"] if self.answers else ""
+
+    @property
+    def further(self) -> list[dict[str, Any]]:
+        """The other candidates that are forms, each with its number."""
+        others = enumerate((self.answers or [])[1:], start=2)
+        return [{**each, "number": number} for number, each in others if form_of(each["form"])]
+
+    @property
+    def n_malformed(self) -> int:
+        """How many of the other candidates are no forms."""
+        return len((self.answers or [])[1:]) - len(self.further)
 
     @property
     def is_cut(self) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from django.http import HttpResponse, QueryDict
@@ -19,6 +20,7 @@ from annotations.models import Duty, Entity, World
 from annotations.models.corpus import MOST_CHARACTERS
 from annotations.people.access import NOTHING, WRITE, WorldRequest, world_view
 from annotations.rows.from_rows import ready_templates
+from annotations.showing.keys import keys_for
 from annotations.showing.paging import number_in
 from parser_service.analysis.probe_texts import PAPER_PROBES
 from parser_service.labelling.wrong_answer_reports import report_wrong, say_parser
@@ -35,7 +37,8 @@ from parser_service.web.serving.heard_pieces import heard_pieces
 
 MOST_OFFERED = 50  # runs
 OWN_EXAMPLES = 3  # as many as there are keys for, beside the texts of the paper
-KEYS = (("1–9", "take an example"),)
+PAGE_KEYS = keys_for("digit")
+LEAST_SHARE = 0.0005  # of 1: what is less would be shown as 0.0 %
 
 
 @world_view(Duty.VIEW)
@@ -60,7 +63,7 @@ def playground(request: WorldRequest, world: World) -> HttpResponse:
         "chosen": parser or run or (opening.pk if opening else ""),
         "examples": _examples(world),
         "most_text": MOST_CHARACTERS,
-        "page_keys": KEYS,
+        "page_keys": PAGE_KEYS,
         "asks_beside": bool(text and shown.get("chosen_beside")),
         **shown,
         **_asking(world),
@@ -82,7 +85,7 @@ def playground_ask(request: WorldRequest, world: World) -> HttpResponse:
                 "answer": answer,
                 "curl": curl_command(request, world, "parse", {"utterance": text, **named}),
                 "pieces": heard_pieces(answer),
-                "bars": list(_bars(answer)),
+                "candidates": offered_candidates(answer),
                 "most_together": MOST_COMMANDS,
             }
         except ParserAway as error:
@@ -150,11 +153,28 @@ def _paper_texts(world: World) -> list[str]:
     return [text for text in texts if known.intersection(text.split())]
 
 
-def _bars(answer: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], float | None]]:
-    """Yield the candidates that are forms, each with the share of 1 that its bar has; None for a score that is none."""
+@dataclass(frozen=True, slots=True)
+class OfferedCandidates:
+    """The candidates of an answer with the share of 1 that their bars have, None for a score that is none: those that
+    are ``offered``, and those that are not, each with the reason."""
+
+    offered: tuple[tuple[Mapping[str, Any], float | None], ...]
+    left_out: tuple[tuple[Mapping[str, Any], str], ...]
+
+
+def offered_candidates(answer: Mapping[str, Any]) -> OfferedCandidates:
+    """Leave out what is no form, and what would stand there with 0.0 %; the best form stays whatever its score."""
+    offered: list[tuple[Mapping[str, Any], float | None]] = []
+    left_out: list[tuple[Mapping[str, Any], str]] = []
     for candidate in answer["candidates"]:
-        if candidate["is_well_formed"]:
-            yield candidate, _share(candidate["score"], answer["score_kind"])
+        share = _share(candidate["score"], answer["score_kind"])
+        if not candidate["is_well_formed"]:
+            left_out.append((candidate, "It is no form."))
+        elif offered and share is not None and share < LEAST_SHARE:
+            left_out.append((candidate, f"It has less than {100 * LEAST_SHARE:g} %."))
+        else:
+            offered.append((candidate, share))
+    return OfferedCandidates(tuple(offered), tuple(left_out))
 
 
 def _share(score: float, kind: str) -> float | None:

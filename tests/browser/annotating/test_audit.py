@@ -49,13 +49,13 @@ def test_labels_are_decided_without_a_mouse(audit_page):
     expect_finding(page, SAID[1])
     finding = AuditFinding.objects.get(text=SAID[1])
     expect(page).to_have_url(re.compile(f"finding={finding.pk}$"))
-    keys.press("c")
+    keys.press("1")
     expect_finding(page, SAID[2])
     assert AuditFinding.objects.get(text=SAID[1]).paraphrase.logical_form == FEMALE
-    keys.press("r")
+    keys.press("i")
     keys.type("not a command")
     keys.press("Enter")
-    keys.press("x")
+    keys.press("r")
     expect_finding(page, SAID[3])
     expect(page.get_by_label("Your last decisions")).to_contain_text("excluded: not a command")
     keys.press("z")  # it is in doubt again
@@ -68,7 +68,7 @@ def test_labels_are_decided_without_a_mouse(audit_page):
     assert status_of(SAID[0]) == "kept"
     expect(page.locator("#list")).to_contain_text("Wrong labels among the 2")
     keys.press("?")
-    expect(page.get_by_role("dialog")).to_contain_text("exclude the pair from new splits")
+    expect(page.get_by_role("dialog")).to_contain_text("exclude a label in doubt from new splits")
 
 
 def test_another_form_is_written(audit_page):

@@ -88,7 +88,7 @@ def review_page(page_of, live_server, sample, reviewer) -> Page:
 
 
 def write_note(page: Page, text: str) -> None:
-    page.keyboard.press("n")
+    page.keyboard.press("i")
     page.keyboard.type(text)
 
 
@@ -125,7 +125,7 @@ def test_a_note_that_was_saved_is_no_draft(review_page, sample):
 
 def test_a_doubt_that_was_sent_is_not_put_back_into_its_empty_form(review_page, sample):
     page = review_page
-    page.keyboard.press("g")
+    page.keyboard.press("d")
     page.keyboard.type("It says go.")
     page.keyboard.press("Enter")
     expect(page.locator("#review-said")).to_be_visible()

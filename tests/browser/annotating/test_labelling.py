@@ -65,7 +65,7 @@ def answered(page: Page) -> list[str]:
 # Four presses of 1, or clicks on it, as quick as the page can be: a busy machine does not make them slow.
 QUICKLY = """async (what) => {
   for (let count = 0; count < 4; count += 1) {
-    if (what === "click") document.querySelector("[data-key='1']").click();
+    if (what === "click") document.querySelector("[data-digit='1']").click();
     else document.body.dispatchEvent(new KeyboardEvent(what, { key: "1", bubbles: true }));
     await new Promise((resolve) => setTimeout(resolve, 1));
   }
@@ -93,6 +93,7 @@ def test_presses_wait_for_the_next_utterance(blind_page):
     wait_until_asked(page)
     for key in "11ued":
         page.keyboard.press(key)
+    expect(page.locator("[data-key-ignored]")).to_contain_text("d ")
     assert answered(page) == SAID
     assert not page.locator("[data-label-panel-place] form").count()
     waiting.pop().continue_()

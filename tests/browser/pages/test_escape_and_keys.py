@@ -165,8 +165,6 @@ PRESS = """async ({key, code, ...more}) => {
   return {done, focus, isOpen, isOurs: event.defaultPrevented};
 }"""
 DECLARED = """() => [...new Set([
-  ...[...document.querySelectorAll("[data-key]")].map((each) => each.dataset.key),
-  ...[...document.querySelectorAll("[data-page-key]")].map((each) => each.dataset.pageKey),
   ...[...document.querySelectorAll("#keys kbd")].map((each) => each.textContent.trim()),
   ...[...document.querySelectorAll("[aria-keyshortcuts]")].map((each) => each.ariaKeyShortcuts),
 ])].filter((key) => /^[a-z1-9]$/.test(key))"""
@@ -189,8 +187,7 @@ def layouts(key: str) -> dict[str, dict[str, object]]:
 
 def keys_of(page: Page) -> list[str]:
     declared: list[str] = page.evaluate(DECLARED)
-    ranged = page.locator("#keys kbd", has_text="–").count()
-    return sorted(set(declared) | (set("123456789") if ranged else set()))
+    return sorted(declared)
 
 
 def test_keys_obey_on_keyboards_of_any_layout_and_in_no_composition(

@@ -55,7 +55,7 @@ def test_one_walks_through_the_errors_and_tags_them(review_page, runs):
     page, keys = review_page, review_page.keyboard
     first, second = examples_of(runs[0])[:2]
     expect(page.locator("#case")).to_have_attribute("data-case", str(first))
-    keys.press("Enter")  # what is proposed
+    keys.press("a")  # what is proposed
     expect(page.locator(f"#answer-{runs[0].pk}")).to_contain_text("tagged by you")
     wait_for_tags((runs[0].pk, first, "wrong_predicate"))
     expect_answer(page, runs[0])
@@ -64,7 +64,7 @@ def test_one_walks_through_the_errors_and_tags_them(review_page, runs):
     expect(page.get_by_role("button", name="8 Ill-formed")).to_have_attribute(
         "aria-pressed", "true"
     )
-    keys.press("u")
+    keys.press("z")
     wait_for_tags()
     expect_answer(page, runs[0])
     keys.press("j")
@@ -93,7 +93,7 @@ def test_the_answer_of_the_other_run_is_tagged_and_noted(review_page, runs):
     keys.press("-")  # the eleventh
     wait_for_tags((runs[1].pk, last, "outside_ontology"))
     expect_answer(page, runs[1])
-    keys.press("n")
+    keys.press("i")
     keys.type("Is this so?")
     keys.press("Enter")
     expect_answer(page, runs[1])
@@ -121,7 +121,7 @@ def test_a_wrong_label_is_sent_to_the_queue(review_page, runs):
     example = runs[0].split.examples.get(pk=examples_of(runs[0])[0])
     form = example.logical_form
     make_paraphrase(runs[0].world, "go", example.utterance, logical_form=form, grounded_form=form)
-    keys.press("g")
+    keys.press("d")
     keys.type("It says go.")
     keys.press("Enter")
     expect(page.get_by_text("as a label in doubt")).to_be_visible()
@@ -139,7 +139,7 @@ def test_trees_and_candidates_stay_open_and_the_keys_are_listed(review_page, run
     expect_answer(page, runs[0])
     expect(page.locator(f"#answer-{runs[0].pk} .tree svg")).to_be_visible()
     keys.press("?")
-    expect(page.get_by_role("dialog")).to_contain_text("accept the category that is proposed")
+    expect(page.get_by_role("dialog")).to_contain_text("accept what is proposed")
 
 
 def press(page: Page, key: str, code: str, **more: bool) -> None:
@@ -164,7 +164,7 @@ def press(page: Page, key: str, code: str, **more: bool) -> None:
 )
 def test_categories_are_tagged_on_keyboards_of_any_layout(review_page, key, code, category):
     press(review_page, key, code)
-    button = review_page.locator(f'[data-review-palette] [data-key="{category}"]')
+    button = review_page.locator(f'[data-review-palette] [data-digit="{category}"]')
     expect(button).to_have_attribute("aria-pressed", "true")
 
 
@@ -190,7 +190,7 @@ def test_letters_count_as_they_are_printed_or_else_by_their_place(
 
 def test_the_enter_that_ends_a_composition_sends_no_note(review_page):
     page = review_page
-    page.keyboard.press("n")
+    page.keyboard.press("i")
     note = page.locator("[data-note]:focus")
     note.fill("へや")
     press(page, "Enter", "Enter", isComposing=True)

@@ -66,7 +66,7 @@ def open_wrong_answers(page: Page, runs: list[TrainingRun]) -> None:
     follow(page, cell_of(page, runs[0]), "Review")
     for run in runs[1:]:
         expect_focus(page, runs[0])
-        page.keyboard.press("a")
+        page.keyboard.press("o")
         choose(page, page.locator("#review-add"), str(run.pk))
         page.keyboard.press("Tab")
         enter(page, "Review")
@@ -101,12 +101,12 @@ def go_to(page: Page, run: TrainingRun, example: Example) -> None:
 def tag_and_doubt(page: Page, run: TrainingRun, example: Example, form: str) -> None:
     """Tag the answer as one of a wrong label, and send the label to the work queue with the right form."""
     button = page.get_by_role("button", name="Wrong gold label")
-    page.keyboard.press(button.get_attribute("data-key"))
+    page.keyboard.press(button.get_attribute("data-digit"))
     expect(button).to_have_attribute("aria-pressed", "true")
     wait_for(lambda: Review.objects.by_people().exists(), "the answer is tagged")
     assert Review.objects.by_people().get().example_id == example.pk
     expect_focus(page, run)
-    page.keyboard.press("g")
+    page.keyboard.press("d")
     page.keyboard.type(REASON)
     page.keyboard.press("Tab")
     choose(page, page.locator("#review-right"), form)
@@ -128,7 +128,7 @@ def take_from_the_queue(page: Page, example: Example) -> None:
 
 def correct(page: Page, example: Example, form: str) -> None:
     expect(page.locator("#finding")).to_contain_text(REASON)
-    page.keyboard.press("c")
+    page.keyboard.press("1")
     expect(page.locator("[data-audit-done]")).to_be_visible()
     paraphrase = Paraphrase.objects.filter(utterance=example.utterance).first()
     assert paraphrase.logical_form == form

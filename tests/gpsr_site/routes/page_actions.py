@@ -68,6 +68,7 @@ PAGE_ACTIONS: dict[str, str | NoRoute] = {
     "people_take_back": NoRoute(
         "It is the button in a message; a program says what it wants instead."
     ),
+    "compare_baseline": NoRoute("It pins a run for one reader; a program names the runs."),
     "first_steps": NoRoute("It closes a list on a page, for one reader."),
     # Files, jobs, commands
     "import": "post import",

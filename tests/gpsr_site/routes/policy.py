@@ -190,6 +190,7 @@ POLICY = [
     Rule("classes_of_household", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
     Rule("entity_class_new", *ANNOTATORS, method="post"),
     Rule("task_category", LOG_IN, NOWHERE, GONE_ON, NO, GONE_ON, method="post"),
+    Rule("compare_baseline", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     Rule("first_steps", LOG_IN, NOWHERE, GONE_ON, GONE_ON, GONE_ON, method="post"),
     *(Rule(name, *MEMBERS) for name in ("recipe", "primitive", "task_category")),
     *(

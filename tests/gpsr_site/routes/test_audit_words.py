@@ -27,7 +27,7 @@ POSTED = {rule.name for rule in POLICY if rule.method == "post"} - API_ROUTES.ke
 ONLY_CHECKS = re.compile("_(check|preview|suggestions|consequences)$")
 UNRECORDED = {
     # What one person alone sees
-    *("draft", "inbox", "notice_open", "queue_next", "first_steps"),
+    *("draft", "inbox", "notice_open", "queue_next", "first_steps", "compare_baseline"),
     *("playground_ask", "beside_ask", "joint_plan_ask", "try_examples"),
     # Contributors are known by a pseudonym alone, also where they are logged in
     *("campaign", "campaign_place", "campaign_done"),

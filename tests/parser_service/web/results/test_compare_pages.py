@@ -327,3 +327,64 @@ def test_fifty_runs_are_offered_without_a_query_each(sample, anna, django_assert
     with django_assert_max_num_queries(50):
         page = anna.get(PAGE, {"part": "validation", "run": [1, 2, 3]})
     assert page.content.decode().count('name="run"') >= 50
+
+
+def differing(client, *runs):
+    return {each.name: each.values for each in compare(client, *runs).context["configuration"].rows}
+
+
+def test_only_what_differs_in_the_configuration_is_shown(sample, second, anna):
+    assert differing(anna, sample.run, second) == {"seed": (sample.run.seed, 1)}
+    second.config = {**second.config, "metric": "other"} | {next(iter(second.config)): "changed"}
+    second.save()
+    assert next(iter(sample.run.config)) in differing(anna, sample.run, second)
+
+
+def test_what_only_one_parser_has_stands_apart(sample, third, anna):
+    shown = compare(anna, sample.run, third).context["configuration"]
+    assert {"parser"} <= {each.name for each in shown.rows}
+    assert {each.name for each in shown.own} >= third.config.keys() - sample.run.config.keys()
+    assert all(None in each.values for each in shown.own)
+
+
+def pin(client, run, query=""):
+    sent = {"query": query} | ({"run": run.pk} if run else {})
+    return client.post(f"{PAGE}baseline/", sent)
+
+
+def test_a_pinned_baseline_comes_first_and_stays(sample, second, third, anna):
+    answer = pin(anna, third, f"run={second.pk}&run={third.pk}&part=validation")
+    assert compare_order(answer.url) == [third.pk, second.pk]
+    assert compare_order(anna.get(PAGE).url)[0] == third.pk
+    assert compare_order(compare(anna, second).url) == [third.pk, second.pk]
+    assert compare(anna, sample.run, second).context["choice"].runs == (sample.run, second)
+    assert compare(anna, third, second).context["baseline"] == third
+
+
+def test_who_unpins_the_baseline_compares_the_two_best_again(sample, second, third, anna):
+    opening = anna.get(PAGE).url
+    pin(anna, third)
+    pin(anna, None)
+    assert anna.get(PAGE).url == opening
+
+
+def test_each_reader_has_a_baseline_of_their_own(sample, second, third, anna, rene):
+    opening = rene.get(PAGE).url
+    pin(anna, third)
+    assert rene.get(PAGE).url == opening
+
+
+def test_a_run_of_another_world_is_no_baseline(sample, second, anna):
+    pin(anna, None)
+    anna.post(f"{PAGE}baseline/", {"run": 10**6})
+    assert compare(anna, sample.run, second).context["baseline"] is None
+
+
+def compare_order(url):
+    return list(map(int, re.findall(r"run=(\d+)", url)))
+
+
+def test_one_run_alone_is_shown_by_its_slices_and_confusions(sample, anna):
+    context = compare(anna, sample.run).context
+    assert context["pairs"] == [] and context["configuration"] is None
+    assert sum(row.count for row in context["heat"].rows) == context["compared"].count

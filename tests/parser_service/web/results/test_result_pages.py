@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from statistics import mean, stdev
 
 import pytest
@@ -85,11 +86,23 @@ def test_nothing_right_is_not_the_best(sample):
     assert not table.rows[0].cells[0].is_best
 
 
-def test_protocols_never_share_a_table(sample):
-    TrainingRun.objects.filter(pk=scored_run(sample.world, sample.split, "seq2seq").pk).update(
-        protocol="grammar"
-    )
-    assert [table.protocol for table in tables(sample)] == ["strict", "grammar"]
+@pytest.fixture
+def two_protocols(sample):
+    run = scored_run(sample.world, sample.split, "seq2seq", right=11)
+    TrainingRun.objects.filter(pk=run.pk).update(protocol="grammar")
+    return sample
+
+
+def test_figures_of_two_protocols_are_never_compared(two_protocols):
+    shown = tables(two_protocols)
+    assert [table.protocol for table in shown] == ["strict", "grammar"]
+    assert not any(table.rows[0].cells[0].is_best for table in shown)
+
+
+def test_all_protocols_stand_in_one_table_each_in_a_group_of_its_own(two_protocols, anna):
+    page = anna.get("/w/home/results/").content.decode()
+    assert page.count('class="accuracy-table"') == 1
+    assert re.findall(r'scope="rowgroup" id="protocol-(\w+)"', page) == ["strict", "grammar"]
 
 
 def test_other_hyperparameters_are_another_row(sample):

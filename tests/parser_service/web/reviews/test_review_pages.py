@@ -314,7 +314,9 @@ def test_a_label_in_doubt_goes_to_the_queue_with_the_reason(run, rene):
 
 def test_the_utterance_is_edited_where_the_shown_runs_answer(run, other, rene):
     page = look(rene, run, other, example=run.predictions.first().example_id).content.decode()
-    address = re.search(r'href="([^"]*/parse/[^"]*)"\s+data-key="e"', page)[1].replace("&amp;", "&")
+    address = re.search(r'href="([^"]*/parse/[^"]*)"\s+data-action="edit"', page)[1].replace(
+        "&amp;", "&"
+    )
     tried = rene.get(address)
     assert tried.context["chosen_beside"] == [run, other]
     assert tried.context["text"] == run.predictions.first().example.utterance

@@ -196,7 +196,7 @@ def test_charts_are_drawn_once_there_is_something_to_draw(sample, anna):
     report = EpochReport(1, 2.0, 1.5, 0.5, 1.0)
     lifecycle.record_epoch(lifecycle.claim("w", "cpu", run), report)
     charts = anna.get(url).content.decode()
-    assert charts.count("data-chart-url") == 2
+    assert charts.count("data-chart-url") == 3
     assert "hx-get" not in charts
     short, _ = run_requests.request(sample.world, sample.split, "knn", seed=5, send=False)
     assert "run-charts" not in anna.get(f"/w/home/runs/{short.pk}/").content.decode()
@@ -246,6 +246,9 @@ def test_the_curves_are_what_the_charts_read(sample, anna):
     ]
     accuracy = anna.get(f"/w/home/runs/{sample.run.pk}/curves/?show=accuracy").json()
     assert accuracy["series"][0]["values"] == [25.0]
+    seconds = anna.get(f"/w/home/runs/{sample.run.pk}/curves/?show=seconds").json()
+    assert seconds["series"][0]["values"] == [sample.run.epochs.get().seconds]
+    assert seconds["y"]["unit"] == "s"
 
 
 @pytest.mark.parametrize(

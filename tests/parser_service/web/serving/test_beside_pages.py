@@ -9,6 +9,7 @@ from parser_service.models import Tryout
 from parser_service.reviews.tryout_answers import MOST_TEXT, answer_jobs
 from parser_service.runs.promoting import promote
 from parser_service.templatetags.provenance import cut_in_words
+from parser_service.web.serving.beside_pages import TriedAnswer
 from tests.annotations.conftest import import_tiny
 from tests.parser_service.live_server import parse_server  # noqa: F401
 from tests.parser_service.reviews.analyses.conftest import done, home, train_one  # noqa: F401
@@ -134,3 +135,11 @@ def test_the_parse_server_answers_where_there_is_one(world, anna, parse_server):
     assert page.context["tryout"].is_answered and "every 500ms" not in page.content.decode()
     assert Tryout.objects.get().answers[str(run.pk)]["answers"][0]["form"].startswith("( find")
     assert not Job.objects.filter(kind="answer").exists()
+
+
+def test_further_candidates_that_are_no_forms_are_counted_and_not_listed(sample):
+    form = '( go " <room> " )'
+    answers = [{"form": each, "score": 0.1} for each in (form, "( go", form)]
+    tried = TriedAnswer(sample.run, answers, "", None)
+    assert [each["number"] for each in tried.further] == [3]
+    assert tried.n_malformed == 1

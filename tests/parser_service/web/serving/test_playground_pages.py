@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import subprocess
@@ -25,6 +26,7 @@ from parser_service.serving.parser_client import AWAY
 from parser_service.templatetags.provenance import cut_in_words
 from parser_service.templatetags.steps import referents
 from parser_service.web.serving.heard_pieces import heard_pieces
+from parser_service.web.serving.playground_pages import offered_candidates
 from tests.annotations.conftest import import_tiny
 from tests.annotations.language.sample_ontology import HOME
 from tests.parser_service.live_server import parse_server  # noqa: F401
@@ -322,3 +324,23 @@ def test_a_form_that_is_none_is_refused_and_kept(run, anna):
     assert answer.status_code == 422 and 'role="alert"' in page
     assert "( bring &quot;&lt;x&gt;</textarea>" in page and 'value="so"' in page
     assert not WorkItem.objects.exists() and not Utterance.objects.exists()
+
+
+def scored(*shares: float, is_well_formed: bool = True) -> list[dict[str, object]]:
+    return [
+        {"form": FETCH, "score": math.log(share), "is_well_formed": is_well_formed}
+        for share in shares
+    ]
+
+
+def test_what_is_no_form_and_what_has_no_share_to_speak_of_is_not_offered():
+    candidates = [*scored(0.4, 0.0004), *scored(0.3, is_well_formed=False), *scored(0.0006)]
+    shown = offered_candidates({"candidates": candidates, "score_kind": "log_probability"})
+    assert [share for _, share in shown.offered] == pytest.approx([0.4, 0.0006])
+    assert [each for each, _ in shown.left_out] == [candidates[1], candidates[2]]
+    assert len({reason for _, reason in shown.left_out}) == 2
+
+
+def test_the_best_form_is_offered_whatever_its_share():
+    answer = {"candidates": scored(0.0001, 0.0001), "score_kind": "log_probability"}
+    assert len(offered_candidates(answer).offered) == 1
