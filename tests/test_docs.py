@@ -173,17 +173,6 @@ def test_what_contributing_names_is_there():
     assert missing == []
 
 
-def test_the_modules_of_a_package_that_a_table_lists_are_there(subtests):
-    """The head of such a table is "module of `folder/`", and its first column has the names of the files."""
-    table = re.compile(r"^\| module of `([\w/]+)` \|.*\n\|.*\n((?:\|.*\n)+)", re.MULTILINE)
-    for page in PAGES:
-        for folder, rows in table.findall(page.read_text("utf-8")):
-            cells = [row.split("|")[1] for row in rows.splitlines()]
-            names = [name for cell in cells for name in re.findall(r"`([\w/]+\.py)`", cell)]
-            with subtests.test(page.name, folder=folder):
-                assert names and not [name for name in names if not (ROOT / folder / name).exists()]
-
-
 def test_every_page_of_the_docs_is_in_the_navigation_and_on_the_first_page():
     pages = {str(page.relative_to(DOCS)) for page in DOCS.rglob("*.md")}
     settings = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
