@@ -15,6 +15,7 @@ import "./mentions.js";
 import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
+import "./search-box.js";
 import "./filter-addresses.js";
 import "./folders.js";
 import { onContent } from "./content.js";

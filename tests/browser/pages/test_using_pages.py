@@ -40,6 +40,31 @@ def test_a_slash_leads_to_the_search_of_every_page(page_of, live_server, annotat
     expect(page.locator("#list tbody tr")).to_have_count(1)
 
 
+def test_the_search_answers_while_one_types_and_acts_by_keys(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/results/")
+    field, found = page.get_by_role("combobox", name="Search home"), page.locator("#search-found")
+    page.keyboard.press("/")
+    page.keyboard.type("locate")
+    option = found.get_by_role("option", name="locate the")
+    expect(option.first).to_be_visible()
+    expect(field).to_have_attribute("aria-expanded", "true")
+    page.keyboard.press("Escape")
+    expect(found).to_be_hidden()
+    expect(field).to_be_focused()
+    expect(field).to_have_value("locate")
+    page.keyboard.press("ArrowDown")
+    expect(field).to_have_attribute("aria-activedescendant", "found-1-1")
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    expect(field).to_have_attribute("aria-activedescendant", "found-all")
+    field.fill("guideli")
+    expect(found.get_by_role("option", name="Guidelines").first).to_be_visible()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("/guidelines/$"))
+
+
 def test_lists_are_turned_by_keys(page_of, live_server, annotator, sample):
     many_commands(sample.world, 70)
     page = page_of(annotator)
