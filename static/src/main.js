@@ -1,6 +1,7 @@
 // What every page needs; the large pieces are fetched where a page holds something for them.
 import "./requests.js";
 import "./submitted.js";
+import "./going-on.js";
 import "./keys.js";
 import "./sheet.js";
 import "./time-zone.js";
