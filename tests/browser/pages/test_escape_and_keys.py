@@ -276,6 +276,7 @@ TAB_TO = """(at) => {
   const button = form.querySelector("button:not([type=button]):not([disabled])");
   if (!button?.checkVisibility()) return false;
   form.noValidate = true;
+  window.isLeft = true;
   button.focus();
   return document.activeElement === button;
 }"""
@@ -310,7 +311,7 @@ def test_after_every_form_the_focus_is_in_what_one_goes_on_with(pages, page_of, 
             page.wait_for_timeout(50)
             if sent == before:
                 continue  # a script has sent it, and the page stays
-            page.wait_for_load_state("domcontentloaded")
+            page.wait_for_function("() => !window.isLeft && document.readyState === 'complete'")
             expect(page.locator(f":is({ENHANCED}):not([data-ready])")).to_have_count(0)
             page.wait_for_timeout(20)  # what is focused last comes after the scripts
             if where := page.evaluate(WHERE):
