@@ -70,8 +70,11 @@ function isInSight(element) {
   return top >= 0 && bottom <= innerHeight;
 }
 
+// Pages that lead the focus from one item to the next.
+const LEADING = "[data-label-page], [data-audit-page], [data-review-page]";
+
 function goOn(left, fresh) {
-  if (!isNowhere()) return;
+  if (!isNowhere() || document.querySelector(LEADING)) return;
   const place = main();
   const control = place && find(left, place);
   // What is out of sight would scroll away what the page says of the action.
