@@ -89,6 +89,22 @@ def test_the_keys_dialog_promises_what_works(page_of, live_server, annotator):
         {"Ctrl", ".", "F8", "Alt", "↑", "↓", "Shift", "F", "\\"},
     )
     assert keys == of_lists | of_editors
+    over = "terms => terms.filter(each => each.scrollWidth > each.clientWidth).map(each => each.innerText)"
+    assert page.locator("#keys dt").evaluate_all(over) == []
+
+
+def test_the_search_stays_where_it_is(page_of, live_server, annotator, sample):
+    page, seen = page_of(annotator), set()
+    for path in ("", "commands/", "coverage/conflicts/", f"runs/{sample.run.pk}/predictions/"):
+        page.goto(f"{live_server.url}/w/home/{path}")
+        for state in ("Worker idle", "No training worker, 12 waiting"):
+            page.evaluate(
+                "said => (document.querySelector('.worker span:last-child').textContent = said)",
+                state,
+            )
+            box = page.locator(".topbar .search").bounding_box() or {}
+            seen.add((box["x"], box["width"]))
+    assert len(seen) == 1
 
 
 def test_enter_in_a_field_of_a_new_split_stores_nothing(page_of, live_server, annotator, sample):
