@@ -304,7 +304,8 @@ def test_after_every_form_the_focus_is_in_what_one_goes_on_with(pages, page_of, 
             route.fallback()
 
     page.route("**/*", answer_with_the_page)
-    for path in pages(b'method="post"'):
+    framed = set(pages(b'id="main"'))  # those of contributors and of the log-in have one form each
+    for path in filter(framed.__contains__, pages(b'method="post"')):
         visit(page, f"{live_server.url}{path}")
         for at in range(page.locator("main form[method=post]").count()):
             if not page.evaluate(TAB_TO, at):
