@@ -18,7 +18,7 @@ from annotations.web.worlds.world_pages import world_import, world_new
 from gpsr_site.accounts.password_pages import ChangePassword, LogIn, SetPassword
 from gpsr_site.pages.document_pages import document, document_image, documents
 from gpsr_site.pages.home_pages import banner, close_first_steps, favicon, healthz, home, world
-from gpsr_site.pages.search import search
+from gpsr_site.pages.search import search, search_found
 from parser_service.rest_urls import urlpatterns as parser_routes
 
 API_ROUTES: list[URLPattern | URLResolver] = [*corpus_routes, *parser_routes]
@@ -65,6 +65,7 @@ urlpatterns = [
     path("w/<slug:world>/", world, name="world"),
     path("w/<slug:world>/first-steps/", close_first_steps, name="first_steps"),
     path("w/<slug:world>/search/", search, name="search"),
+    path("w/<slug:world>/search/found/", search_found, name="search_found"),
     path("w/<slug:world>/", include("annotations.urls")),
     path("w/<slug:world>/", include("parser_service.urls")),
     path("api/v1/", include((API_ROUTES, "api"))),

@@ -121,3 +121,14 @@ READERS_OF_KEYS = {"typing.js", "theme.js"}
 def test_one_script_alone_reads_the_keyboard():
     readers = {script.name for script in SCRIPTS if KEY_READ.search(read(script))}
     assert readers == READERS_OF_KEYS, "ask keyOf of typing.js"
+
+
+def test_whatever_moves_stands_still_where_somebody_wants_that():
+    """``--motion`` is 0 there; a time of its own would go on moving."""
+    moving = [
+        f"{name_of(style)}: {declared}"
+        for style in STYLES
+        for declared in re.findall(r"(?:transition|animation)[\w-]*:[^;]+;", read(style))
+        if re.search(r"\d(?:ms|s)\b", declared.replace("0s", ""))
+    ]
+    assert moving == []

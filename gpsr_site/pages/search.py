@@ -1,4 +1,8 @@
-"""Search a whole world by kind: what any of its lists would show for the same words."""
+"""Search a whole world by kind: what any of its lists would show for the same words, and pages, worlds and documents.
+
+While somebody types the top bar asks for the first few: it looks through the newest rows of each kind alone, so that an
+answer costs the same in every world.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +29,7 @@ from annotations.models import (
     Utterance,
     World,
 )
-from annotations.people.access import world_view
+from annotations.people.access import WorldRequest, world_view
 from annotations.showing.filtering import PageFilters
 from annotations.showing.form_presentation import shown
 from annotations.web.corpus.corpus_filters import (
@@ -41,12 +45,24 @@ from annotations.web.description.description_filters import (
     ProductionFilters,
     TemplateFilters,
 )
+from gpsr_site.documents import Hit as DocumentHit
+from gpsr_site.documents import search_documents
+from gpsr_site.pages.rail import all_entries
 from parser_service.models import TrainingRun
 from parser_service.parsers.registry import title_of
 from parser_service.web.runs.run_filters import RunFilters
 
 MOST_SHOWN = 5  # rows of each kind
 MOST_COUNTED = 1_000  # beyond it the page says "over 1,000"
+MOST_SCANNED = 5_000  # rows of each kind, while somebody types
+MOST_WHILE_TYPING = 2  # rows of each kind
+OWN_PAGES = (
+    ("Worlds", "home"),
+    ("Documents", "documents"),
+    ("Inbox", "inbox"),
+    ("My drafts", "my_drafts"),
+    ("Account", "account"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +176,7 @@ class Hit:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """The matches of one kind: the first few, how many there are, and the list of all of them."""
+    """The matches of one kind: the first few, how many there are, and the list of all of them, where there is one."""
 
     title: str
     hits: tuple[Hit, ...]
@@ -174,13 +190,90 @@ class Group:
 
 
 @world_view(Duty.VIEW)
-def search(request: HttpRequest, world: World) -> HttpResponse:
+def search(request: WorldRequest, world: World) -> HttpResponse:
     """Show what the world has for the words in ``q``, by kind."""
-    words = request.GET.get("q", "").replace("\0", "").strip()
-    groups = list(groups_of(request, world, words)) if words else []
-    return render(
-        request, "gpsr_site/search.html", {"words": words, "groups": groups, "kinds": KINDS}
+    words = _words_in(request)
+    context = {
+        "words": words,
+        "leads": leads_of(request, world, words),
+        "groups": list(groups_of(request, world, words)) if words else [],
+        "kinds": KINDS,
+    }
+    return render(request, "gpsr_site/search.html", context)
+
+
+@world_view(Duty.VIEW)
+def search_found(request: WorldRequest, world: World) -> HttpResponse:
+    """Return the first matches for the words in ``q``, as the top bar lists them while somebody types."""
+    words = _words_in(request)
+    groups = leads_of(request, world, words)
+    if words:
+        groups += newest_of(request, world, words)
+    context = {"words": words, "groups": groups, "rail_world": world}
+    return render(request, "_search_found.html", context)
+
+
+def _words_in(request: HttpRequest) -> str:
+    return request.GET.get("q", "").replace("\0", "").strip()
+
+
+def leads_of(request: WorldRequest, world: World, words: str) -> list[Group]:
+    """Return the pages, worlds and documents whose names have the words; of documents also what they say."""
+    wanted = words.casefold().split()
+    if not wanted:
+        return []
+    pages = [
+        *(
+            Hit(entry.label, "", reverse(entry.page, kwargs={"world": world.name}) + entry.query)
+            for entry in all_entries()
+            if entry.duty in request.duties and entry.has_page
+        ),
+        *(Hit(label, "", reverse(name)) for label, name in OWN_PAGES),
+    ]
+    worlds = World.objects.visible_to(request.user).filter(name__icontains=words)
+    groups = (
+        ("Pages", [page for page in pages if _begins(page.text, wanted)]),
+        (
+            "Worlds",
+            [
+                Hit(each.name, "", reverse("world", args=[each.name]))
+                for each in worlds[:MOST_SHOWN]
+            ],
+        ),
+        ("Documents", [_document_hit(hit) for hit in search_documents(words)]),
     )
+    return [Group(title, tuple(hits[:MOST_SHOWN]), len(hits), "") for title, hits in groups if hits]
+
+
+def _begins(label: str, wanted: list[str]) -> bool:
+    """Whether each of the words is the beginning of a word of ``label``."""
+    heads = label.casefold().split()
+    return all(any(head.startswith(word) for head in heads) for word in wanted)
+
+
+def _document_hit(hit: DocumentHit) -> Hit:
+    heading = hit.heading.text if hit.heading.level > 1 else ""
+    return Hit(hit.document.title, heading, hit.url)
+
+
+def newest_of(request: HttpRequest, world: World, words: str) -> list[Group]:
+    """Return the first matches of each kind among the newest ``MOST_SCANNED`` rows of the world."""
+    groups = []
+    for kind in KINDS:
+        rows = kind.model._default_manager.filter(**{kind.world_path: world})
+        newest = rows.order_by("-pk").values("pk")[:MOST_SCANNED]
+        scanned = kind.model._default_manager.filter(pk__in=newest)
+        matches = kind.filters({"q": words}, queryset=scanned, request=request).qs
+        if hits := tuple(
+            _hit(kind, row, world) for row in matches.order_by("-pk")[:MOST_WHILE_TYPING]
+        ):
+            groups.append(Group(kind.title, hits, len(hits), ""))
+    return groups
+
+
+def _hit(kind: Kind, row: Model, world: World) -> Hit:
+    address = reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk})
+    return Hit(kind.text(row), kind.note(row), address)
 
 
 def groups_of(request: HttpRequest, world: World, words: str) -> Iterator[Group]:
@@ -191,13 +284,6 @@ def groups_of(request: HttpRequest, world: World, words: str) -> Iterator[Group]
         count = matches.order_by()[: MOST_COUNTED + 1].count()
         if not count:
             continue
-        hits = tuple(
-            Hit(
-                kind.text(row),
-                kind.note(row),
-                reverse(kind.page_name, kwargs={"world": world.name, "pk": row.pk}),
-            )
-            for row in matches[:MOST_SHOWN]
-        )
+        hits = tuple(_hit(kind, row, world) for row in matches[:MOST_SHOWN])
         list_url = reverse(kind.list_name, kwargs={"world": world.name})
         yield Group(kind.title, hits, count, f"{list_url}?{urlencode({'q': words})}")

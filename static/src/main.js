@@ -1,6 +1,7 @@
 // What every page needs; the large pieces are fetched where a page holds something for them.
 import "./requests.js";
 import "./submitted.js";
+import "./going-on.js";
 import "./keys.js";
 import "./sheet.js";
 import "./time-zone.js";
@@ -15,6 +16,7 @@ import "./mentions.js";
 import "./copying.js";
 import "./suggestions.js";
 import "./row-search.js";
+import "./search-box.js";
 import "./filter-addresses.js";
 import "./folders.js";
 import { onContent } from "./content.js";

@@ -112,6 +112,12 @@ OUT_OF_LINE = """() => {
   const gap = Math.round(tabs && head.contains(tabs) ? at(tabs) - at(title) - title.offsetHeight : 8);
   return at(title) === (innerWidth < 800 ? 16 : 20) && gap === 8 ? [] : [`title at ${at(title)}, tabs ${gap} below`];
 }"""
+# Fields and cells for what people write that force the direction of our own script on it.
+ONE_DIRECTION = """() => [...document.querySelectorAll(
+    "main :is(input:is([type=text], [type=search]), textarea, td.text, q, h1)")]
+  .filter((each) => each.checkVisibility())
+  .filter((each) => !["plaintext", "isolate"].includes(getComputedStyle(each).unicodeBidi))
+  .map((each) => each.outerHTML.slice(0, 120))"""
 # Chosen options that their field has no room for.
 CUT_CHOICES = """() => {
   const pen = new OffscreenCanvas(1, 1).getContext("2d");
@@ -164,6 +170,7 @@ OF_PAPER = {
 }
 OF_WIDTH = {"beside the screen": BESIDE, "cut": CUT, "crumbs": CRUMBS, "out of line": OUT_OF_LINE}
 OF_STRUCTURE = {
+    "of one direction": ONE_DIRECTION,
     "without a name": NAMELESS,
     "ids given twice": TWICE,
     "headings": HEADINGS,

@@ -31,6 +31,7 @@ class ProductionNoun(Noun):
     preview_template = "annotations/description/_production_preview.html"
     list_template = "annotations/description/grammar.html"
     filters = ProductionFilters
+    page_size = 50
     sorts = {
         "position": Sort("File and line", "position"),
         "nonterminal": Sort("Nonterminal", "nonterminal"),

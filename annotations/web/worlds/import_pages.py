@@ -150,6 +150,6 @@ def _generated(
         request,
         f"{made.commands:,} commands with {made.forms:,} logical forms: "
         f"{changes.added:,} rows added, {changes.changed:,} changed, {changes.removed:,} removed, "
-        f"{changes.moved:,} in another place.",
+        f"{changes.moved:,} moved.",
     )
     return redirect("commands", world=world.name)

@@ -91,6 +91,7 @@ def test_two_clicks_from_a_command_to_a_filled_editor_and_one_key_to_the_next(
     expect(page.locator("h1")).to_have_text("New template")
     assert page.url.endswith("?task_category=1&command=go+to+the+%3Croom%3E")
     expect(page.get_by_role("textbox", name="Pattern")).to_have_text("go to the {room}")
+    expect(page.locator(".cm-content:focus")).to_have_count(1)
     assert SemanticTemplate.objects.filter(pattern="$vbfind the {kobject}").count() == 1
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from django.test import Client
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from annotations.labelling.collecting import collect
 from annotations.models import User
@@ -264,3 +265,67 @@ def test_a_form_that_comes_back_has_the_focus_in_its_first_wrong_field(
                     wrong.append((path, at, focused))
     assert wrong == []
     assert len(seen) > 15
+
+
+# Gives the focus to the button of the form at a place, as somebody has it who tabs there. Says no where none can be
+# pressed.
+TAB_TO = """(at) => {
+  const form = [...document.querySelectorAll("main form[method=post]")][at];
+  if (!form || form.matches("[hx-post], [data-label-answer], [data-label-mend]")) return false;
+  for (let fold = form.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  const button = form.querySelector("button:not([type=button]):not([disabled])");
+  if (!button?.checkVisibility()) return false;
+  form.noValidate = true;
+  window.isLeft = true;
+  addEventListener("submit", (event) => (document.title = event.defaultPrevented ? "stays" : "goes"));
+  button.focus();
+  return document.activeElement === button;
+}"""
+ANSWERED = (
+    "() => document.title === 'stays' || (!window.isLeft && document.readyState === 'complete')"
+)
+WHERE = """() => {
+  const focused = document.activeElement;
+  const isHere = focused.closest("main, dialog") && focused.checkVisibility();
+  return isHere ? "" : focused.outerHTML.slice(0, 99);
+}"""
+
+
+def test_after_every_form_the_focus_is_in_what_one_goes_on_with(pages, page_of, admin, live_server):
+    """Each form is sent from its button by Enter, and answered with the page on which it stands."""
+    page, lost, sent, path = page_of(admin), [], 0, ""
+
+    def answer_with_the_page(route: Route) -> None:
+        nonlocal sent
+        if route.request.method == "POST" and route.request.is_navigation_request():
+            sent += 1
+            route.continue_(method="GET", url=f"{live_server.url}{path}")
+        else:
+            route.fallback()
+
+    page.route("**/*", answer_with_the_page)
+    framed = set(pages(b'id="main"'))  # those of contributors and of the log-in have one form each
+    for path in filter(framed.__contains__, pages(b'method="post"')):
+        visit(page, f"{live_server.url}{path}")
+        for at in range(page.locator("main form[method=post]").count()):
+            if not page.evaluate(TAB_TO, at):
+                continue
+            page.keyboard.press("Enter")
+            page.wait_for_function(ANSWERED)
+            if page.title() == "stays":  # a script has sent it
+                visit(page, f"{live_server.url}{path}")
+                continue
+            expect(page.locator(f":is({ENHANCED}):not([data-ready])")).to_have_count(0)
+            page.wait_for_timeout(20)  # what is focused last comes after the scripts
+            if where := page.evaluate(WHERE):
+                lost.append((path, at, where))
+    assert lost == []
+    assert sent > 40
+
+
+def test_save_and_next_leaves_the_focus_on_what_comes_next(page_of, live_server, sample, annotator):
+    page = page_of(annotator)
+    visit(page, f"{live_server.url}/w/home/templates/{sample.template.pk}/")
+    page.get_by_role("button", name="Save and next").press("Enter")
+    page.wait_for_url(re.compile("/templates/new/|/coverage/"))
+    expect(page.locator("#main:focus, #main :focus")).to_have_count(1)

@@ -40,6 +40,31 @@ def test_a_slash_leads_to_the_search_of_every_page(page_of, live_server, annotat
     expect(page.locator("#list tbody tr")).to_have_count(1)
 
 
+def test_the_search_answers_while_one_types_and_acts_by_keys(page_of, live_server, annotator):
+    page = page_of(annotator)
+    page.goto(f"{live_server.url}/w/home/results/")
+    field, found = page.get_by_role("combobox", name="Search home"), page.locator("#search-found")
+    page.keyboard.press("/")
+    page.keyboard.type("locate")
+    option = found.get_by_role("option", name="locate the")
+    expect(option.first).to_be_visible()
+    expect(field).to_have_attribute("aria-expanded", "true")
+    page.keyboard.press("Escape")
+    expect(found).to_be_hidden()
+    expect(field).to_be_focused()
+    expect(field).to_have_value("locate")
+    page.keyboard.press("ArrowDown")
+    expect(field).to_have_attribute("aria-activedescendant", "found-1-1")
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    expect(field).to_have_attribute("aria-activedescendant", "found-all")
+    field.fill("guideli")
+    expect(found.get_by_role("option", name="Guidelines").first).to_be_visible()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("/guidelines/$"))
+
+
 def test_lists_are_turned_by_keys(page_of, live_server, annotator, sample):
     many_commands(sample.world, 70)
     page = page_of(annotator)
@@ -64,6 +89,22 @@ def test_the_keys_dialog_promises_what_works(page_of, live_server, annotator):
         {"Ctrl", ".", "F8", "Alt", "↑", "↓", "Shift", "F", "\\"},
     )
     assert keys == of_lists | of_editors
+    over = "terms => terms.filter(each => each.scrollWidth > each.clientWidth).map(each => each.innerText)"
+    assert page.locator("#keys dt").evaluate_all(over) == []
+
+
+def test_the_search_stays_where_it_is(page_of, live_server, annotator, sample):
+    page, seen = page_of(annotator), set()
+    for path in ("", "commands/", "coverage/conflicts/", f"runs/{sample.run.pk}/predictions/"):
+        page.goto(f"{live_server.url}/w/home/{path}")
+        for state in ("Worker idle", "No training worker, 12 waiting"):
+            page.evaluate(
+                "said => (document.querySelector('.worker span:last-child').textContent = said)",
+                state,
+            )
+            box = page.locator(".topbar .search").bounding_box() or {}
+            seen.add((box["x"], box["width"]))
+    assert len(seen) == 1
 
 
 def test_enter_in_a_field_of_a_new_split_stores_nothing(page_of, live_server, annotator, sample):

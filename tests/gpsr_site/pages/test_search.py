@@ -6,6 +6,7 @@ import pytest
 
 from annotations.labelling.collecting import collect
 from annotations.models import Entity, Paraphrase
+from gpsr_site.pages import search
 from tests.sample_world import make_paraphrase
 
 
@@ -65,8 +66,8 @@ def test_nothing_and_no_words_are_told(sample, anna):
     assert not found.context["groups"] and "“zebra”" in found.content.decode()
     page = " ".join(anna.get("/w/home/search/").content.decode().split())
     assert (
-        "Searches entities, predicates, productions, templates, commands, logical forms, paraphrases, "
-        "utterances, splits and runs."
+        "Searches pages, worlds, documents, entities, predicates, productions, templates, commands, "
+        "logical forms, paraphrases, utterances, splits and runs."
     ) in page
 
 
@@ -105,3 +106,48 @@ def test_entities_answer_to_their_aliases(words, sample, anna):
 def test_what_stands_between_aliases_is_not_searched(words, sample, anna):
     Entity.objects.update(aliases=["tea pot", "kettle"])
     assert "Entities" not in matches_of(anna, words)
+
+
+def found_by(client, words):
+    """Title → texts and addresses of what the top bar lists while somebody types."""
+    groups = client.get("/w/home/search/found/", {"q": words}).context["groups"]
+    return {group.title: {hit.text: hit.url for hit in group.hits} for group in groups}
+
+
+def test_pages_worlds_and_documents_are_found_by_their_names(sample, other_sample, anna):
+    assert found_by(anna, "learn cur")["Pages"] == {"Learning curves": "/w/home/results/curves/"}
+    assert found_by(anna, "inbox")["Pages"] == {"Inbox": "/inbox/"}
+    assert found_by(anna, "hom")["Worlds"] == {"home": "/w/home/"}
+    assert "Worlds" not in found_by(anna, other_sample.world.name)
+    assert all(
+        url.startswith("/docs/") for url in found_by(anna, "campaigns")["Documents"].values()
+    )
+    leads = anna.get("/w/home/search/", {"q": "learn cur"}).context["leads"]
+    assert [hit.text for hit in leads[0].hits] == ["Learning curves"]
+
+
+def test_a_page_is_found_by_those_alone_who_may_open_it(sample, anna, adam):
+    assert "Pages" not in found_by(anna, "audit log")
+    assert found_by(adam, "audit log")["Pages"] == {"Audit log": "/w/home/log/"}
+
+
+@pytest.mark.parametrize("words", ["milk", "is_a", "locate", "home-sp", "nearest neighbour"])
+def test_rows_are_found_while_somebody_types(words, sample, anna):
+    listed, found = matches_of(anna, words), found_by(anna, words)
+    assert {title: set(texts) for title, texts in listed.items()} == {
+        title: set(hits) for title, hits in found.items() if title in listed
+    }
+
+
+def test_while_somebody_types_the_newest_rows_alone_are_read(sample, anna, monkeypatch):
+    monkeypatch.setattr(search, "MOST_SCANNED", 1)
+    newest = sample.world.commands.order_by("pk").last()
+    words = newest.anonymized_text.split()[0]
+    assert list(found_by(anna, words)["Commands"]) == [newest.anonymized_text]
+    oldest = sample.world.commands.order_by("pk").first().anonymized_text
+    assert "Commands" not in found_by(anna, oldest) and "Commands" in matches_of(anna, oldest)
+
+
+def test_a_key_costs_as_many_queries_in_every_world(sample, anna, django_assert_max_num_queries):
+    with django_assert_max_num_queries(24):
+        found_by(anna, "the")

@@ -202,7 +202,7 @@ PAGE_VIEWS: dict[str, str | NoRoute] = {
     "site_log": "get site-log",
     "audit_log": "get audit-log",
     "world": "get world",
-    "search": NoRoute("Each list takes q."),
+    **dict.fromkeys(("search", "search_found"), NoRoute("Each list takes q.")),
     "download": "get download",
     "download_part": "get download-part",
     "jobs": "get job-list",

@@ -83,6 +83,7 @@ POLICY = [
         for name in (
             "world",
             "search",
+            "search_found",
             "download",
             "jobs",
             "job",

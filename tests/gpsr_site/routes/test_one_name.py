@@ -21,7 +21,7 @@ from tests.gpsr_site.routes.rules import undone
 
 METHODS = sorted({(rule.name, rule.method) for rule in POLICY if rule.name not in API_ROUTES})
 # The list of all worlds and what is about no kind of work have no entry in the rail of a world.
-WITHOUT_ENTRY = {"search", "comment"}
+WITHOUT_ENTRY = {"search", "search_found", "comment"}
 DOCUMENTS = {"documents", "document"}  # their heading is that of the text
 
 
