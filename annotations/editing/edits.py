@@ -107,8 +107,13 @@ def add_many(rows: Sequence[Row], by: User, once: str = "") -> int:
     return add_all([rows], by, once)
 
 
-def add_all(groups: Sequence[Sequence[Editable]], by: User, once: str = "") -> int:
-    """Do what ``add_many`` does for rows of several models, a group each, of one world."""
+def add_all(
+    groups: Sequence[Sequence[Editable]], by: User, once: str = "", reason: str = ""
+) -> int:
+    """Do what ``add_many`` does for rows of several models, a group each, of one world.
+
+    ``reason`` is for their history.
+    """
     groups = [rows for rows in groups if rows]
     if not groups:
         return 0
@@ -117,7 +122,7 @@ def add_all(groups: Sequence[Sequence[Editable]], by: User, once: str = "") -> i
         if made_before(by, once):
             return 0
         for rows in groups:
-            _insert_many(rows, world, by)
+            _insert_many(rows, world, by, reason)
         remember(by, once, groups[0][0].pk)
         for rows in groups:
             check_again(world, type(rows[0]))
@@ -126,7 +131,7 @@ def add_all(groups: Sequence[Sequence[Editable]], by: User, once: str = "") -> i
         return sum(map(len, groups))
 
 
-def _insert_many(rows: Sequence[Editable], world: World, by: User) -> None:
+def _insert_many(rows: Sequence[Editable], world: World, by: User, reason: str = "") -> None:
     """Store unsaved rows of one model, behind the others where they have a place."""
     model = type(rows[0])
     last = None
@@ -139,7 +144,7 @@ def _insert_many(rows: Sequence[Editable], world: World, by: User) -> None:
         row.version = 1
         row.note_editor(by)
     with _refuse_repeated(model):
-        keep(model._default_manager.bulk_create(rows, batch_size=BATCH), ADDED, by)
+        keep(model._default_manager.bulk_create(rows, batch_size=BATCH), ADDED, by, reason)
 
 
 def change(row: Row, values: Mapping[str, Any], by: User, version: int, again: bool = True) -> Row:
@@ -178,9 +183,12 @@ def change(row: Row, values: Mapping[str, Any], by: User, version: int, again: b
 
 
 def change_many(
-    world: World, changes: Sequence[tuple[Editable, Mapping[str, Any]]], by: User
+    world: World,
+    changes: Sequence[tuple[Editable, Mapping[str, Any]]],
+    by: User,
+    reason: str = "",
 ) -> None:
-    """Make the next version of each row of ``world``, all of them or none.
+    """Make the next version of each row of ``world``, all of them or none; ``reason`` is for their history.
 
     The rows are as they were read. Raises Overtaken where one has changed since, and ValidationError
     where another row says the same.
@@ -192,7 +200,7 @@ def change_many(
             by_model.setdefault(type(row), []).append((row, values))
         did_make_commands = any(row.makes_commands for row, _ in changes)
         for model, some in by_model.items():
-            _change_rows(model, some, by)
+            _change_rows(model, some, by, reason)
         for model in by_model:
             check_again(world, model)
         if did_make_commands:
@@ -200,7 +208,10 @@ def change_many(
 
 
 def _change_rows(
-    model: type[Editable], changes: Sequence[tuple[Editable, Mapping[str, Any]]], by: User
+    model: type[Editable],
+    changes: Sequence[tuple[Editable, Mapping[str, Any]]],
+    by: User,
+    reason: str,
 ) -> None:
     rows = [row for row, _ in changes]
     for some in batches(rows):
@@ -219,7 +230,25 @@ def _change_rows(
     fields |= {name for name in ("author", "is_edited") if hasattr(model, name)}
     with _refuse_repeated(model):
         model._default_manager.bulk_update(rows, sorted(fields), batch_size=BATCH)
-    keep(rows, CHANGED, by)
+    keep(rows, CHANGED, by, reason)
+
+
+def delete_many(
+    world: World, groups: Sequence[Sequence[Editable]], by: User, reason: str = ""
+) -> None:
+    """Delete rows of ``world``, a group for each model, as they were read while the world was held."""
+    groups = [rows for rows in groups if rows]
+    with transaction.atomic():
+        _lock(world)
+        for rows in groups:
+            model, keys = type(rows[0]), [row.pk for row in rows]
+            keep_first(model, keys)
+            keep(rows, DELETED, by, reason)
+            for some in batches(keys):
+                model._default_manager.filter(pk__in=some).delete()
+            check_again(world, model)
+        if any(row.makes_commands for rows in groups for row in rows):
+            _bring_up_to_date(world, by)
 
 
 def delete(row: Editable, by: User, version: int) -> None:

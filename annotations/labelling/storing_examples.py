@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from django.core.exceptions import ValidationError
 from django.db import transaction
+from django.utils import timezone
 
 from annotations import models
 from annotations.editing.edits import add_all, change_many
 from annotations.editing.once_keys import made_before, remember
 from annotations.labelling.collecting import collect
 from annotations.labelling.entity_spans import anonymizer_of
+from annotations.labelling.taking_back import reason_of
 from annotations.labelling.upload_reading import UploadFormat
 from annotations.language.corpus import require_entity_name, require_predicate
 from annotations.language.forms import (
@@ -78,6 +80,7 @@ class StoredExamples:
     templates: int = 0
     utterances: int = 0
     lengthened: int = 0
+    upload: int = field(default=0, compare=False)
 
 
 def store_examples(
@@ -111,17 +114,21 @@ def store_examples(
         ]
         edits = [edit for change in proposal.changes for edit in change.edits]
         lengthened = [_lengthened(held, each) for each in edits if each.was is not None]
-        change_many(held, [*changed, *lengthened], by)
+        upload = models.Upload.objects.create(
+            world=held, created_by=by, format=UploadFormat.TEXT, stored_at=None
+        )
+        change_many(held, [*changed, *lengthened], by, reason_of(upload))
         groups = _unsaved(held, proposal, known, category)
         try:
-            add_all(groups, by)
+            add_all(groups, by, reason=reason_of(upload))
         except ValidationError as error:
             raise NoExamples([error_at(Position(), "; ".join(error.messages))]) from error
         classes, entities, predicates, productions, templates, _ = map(len, groups)
         return StoredExamples(
             *(classes, entities, predicates, len(changed), productions, templates),
-            utterances=_keep_lines(held, proposal, known, by),
+            utterances=_keep_lines(held, upload, proposal, known, by),
             lengthened=len(lengthened),
+            upload=upload.pk,
         )
 
 
@@ -243,7 +250,9 @@ def _signatures(predicate: Predicate) -> list[list[str]]:
     return [list(map(str, each.arguments)) for each in predicate.signatures]
 
 
-def _keep_lines(world: World, proposal: Proposal, known: KnownWorld, by: User) -> int:
+def _keep_lines(
+    world: World, upload: models.Upload, proposal: Proposal, known: KnownWorld, by: User
+) -> int:
     """Store the lines as utterances, with their forms where ``by`` may say what they mean; return how many are new."""
     charts = [TemplateChart(categories_with(proposal, known))]
     charts += [known.chart] if known.chart else []
@@ -251,9 +260,12 @@ def _keep_lines(world: World, proposal: Proposal, known: KnownWorld, by: User) -
     for each in proposal.examples if world.allows(by, Duty.MANAGE) else ():
         if form := _form_of(each, anonymizer, charts):
             forms[each.said] = form
-    upload = models.Upload(world=world, created_by=by, format=UploadFormat.TEXT)
     said = [each.said for each in proposal.examples]
-    return collect(world, said, by=by, upload=upload, forms=forms).added
+    added = collect(world, said, by=by, upload=upload, forms=forms).added
+    if not added:  # what came with it can be undone all the same
+        upload.stored_at = timezone.now()
+        upload.save()
+    return added
 
 
 def _form_of(example: Example, anonymizer: Anonymizer, charts: list[TemplateChart]) -> str:

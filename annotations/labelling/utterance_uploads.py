@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from http import HTTPStatus
 
+from django.core.exceptions import ValidationError
 from django.db import transaction
 from django.db.models import Exists, OuterRef
 from django.utils import timezone
@@ -23,6 +24,7 @@ from annotations.labelling.collecting import (
 )
 from annotations.labelling.foreign_formats import join_brat
 from annotations.labelling.form_check import canonical_label
+from annotations.labelling.taking_back import bring_again, take_back
 from annotations.labelling.upload_reading import (
     FORMAT_NAMES,
     MOST_BYTES,
@@ -237,10 +239,11 @@ def count_labelled(upload: Upload) -> int:
     return upload.utterances.filter(Exists(answers)).count()
 
 
-def undo(upload: Upload, by: User, with_labelled: bool) -> int:
+def undo(upload: Upload, by: User, with_labelled: bool, with_world: bool = False) -> int:
     """Delete the utterances of an upload. Those that somebody has answered since stay, unless ``with_labelled``.
 
-    Returns how many were deleted. Raises NotNow where it is undone already, or not stored.
+    What else came with it stays, unless ``with_world``. Returns how many utterances were deleted. Raises NotNow where
+    it is undone already, or not stored, and StillUsed where something depends on what came with it.
     """
     with transaction.atomic():
         stored = Upload.objects.select_for_update().get(pk=upload.pk)
@@ -250,6 +253,8 @@ def undo(upload: Upload, by: User, with_labelled: bool) -> int:
                 if stored.stored_at
                 else "This upload is not stored yet."
             )
+        if with_world:
+            take_back(stored, by)
         rows = stored.utterances.all()
         if not with_labelled:
             answers = Label.objects.valid().filter(created_at__gt=stored.stored_at)
@@ -260,15 +265,19 @@ def undo(upload: Upload, by: User, with_labelled: bool) -> int:
 
 
 def redo(upload: Upload, by: User) -> tuple[int, int]:
-    """Restore what ``undo`` deleted.
+    """Restore what ``undo`` deleted, and what came with it.
 
-    Returns how many came back, and how many stay deleted because their texts are here again.
-    Raises NotNow where it is not undone.
+    Returns how many utterances came back, and how many stay deleted because their texts are here again.
+    Raises NotNow where it is not undone, or where another row says the same as one that came with it.
     """
     with transaction.atomic():
         stored = Upload.objects.select_for_update().get(pk=upload.pk)
         if stored.undone_at is None:
             raise NotNow("This upload is not undone.")
+        try:
+            bring_again(stored, by)
+        except ValidationError as error:
+            raise NotNow(f"Not restored. {' '.join(error.messages)}") from error
         rows = Utterance.with_deleted.filter(upload=stored, deleted_at=stored.undone_at)
         n_restored, n_taken = restore_utterances(rows, by)
         stored.undone_at = stored.undone_by = None

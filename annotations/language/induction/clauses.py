@@ -37,11 +37,15 @@ def names_all(example: Example) -> bool:
 
 def _cut(parts: tuple[Part, ...]) -> Iterator[tuple[Part, ...]]:
     start = place = 0
+    is_command = bool(parts) and _is_verb(parts, 0)
     while place < len(parts):
         length = _joint(parts, place) if place > start else 0
         if length and _is_verb(parts, place + length):
-            yield parts[start:place]
-            start = place = place + length
+            if is_command:  # "in bed two, water the roses" begins with none
+                yield parts[start:place]
+                start = place + length
+            is_command = True
+            place += length
         else:
             place += 1
     yield parts[start:]

@@ -11,6 +11,7 @@ from django.http import Http404, HttpResponse
 from django.shortcuts import get_object_or_404, redirect, render
 from django.urls import reverse
 
+from annotations.labelling.taking_back import StillUsed, brought_by, why_not
 from annotations.labelling.upload_reading import FORMAT_NAMES, TABLES
 from annotations.labelling.utterance_uploads import (
     NotNow,
@@ -132,17 +133,23 @@ def _store(request: WorldRequest, world: World, row: Upload, shown: Preview) -> 
 @may_take_long
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="undo an upload")
 def upload_undo(request: WorldRequest, world: World, pk: int) -> HttpResponse:
-    """Delete the utterances of an upload. Where somebody has answered some since, ask first about these."""
+    """Delete the utterances of an upload. Ask first about those answered since, and about what came with it."""
     row = _upload(world, pk)
     n_labelled = count_labelled(row) if row.stored_at and not row.undone_at else 0
     choice = request.POST.get("labelled", "")
-    if request.method != "POST" or (n_labelled and choice not in ("keep", "delete")):
-        context: dict[str, Any] = {"row": row, "n_labelled": n_labelled}
+    brought = "" if row.undone_at else brought_by(row).counts
+    of_world = request.POST.get("world", "")
+    asks = n_labelled and choice not in ("keep", "delete")
+    if request.method != "POST" or asks or (brought and of_world not in ("keep", "delete")):
+        context: dict[str, Any] = {"row": row, "n_labelled": n_labelled, "brought": brought}
+        context["still_used"] = why_not(row) if brought else ""
         context["n_present"] = row.utterances.count()
         return render(request, "annotations/corpus/upload_undo.html", context)
     try:
-        deleted = undo(row, request.user, with_labelled=choice == "delete")
-    except NotNow as error:
+        deleted = undo(
+            *(row, request.user), with_labelled=choice == "delete", with_world=of_world == "delete"
+        )
+    except (NotNow, StillUsed) as error:
         messages.error(request, str(error))
     else:
         sentence = f"Undone: {say_count(deleted, 'utterance')} of {row} deleted."

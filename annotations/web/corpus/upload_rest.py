@@ -145,9 +145,11 @@ def shown_as_json(shown: Preview, upload: Upload | None) -> dict[str, Any]:
 
 
 class UndoRequest(Fields):
-    """``labelled`` says what becomes of utterances that somebody has answered since the upload."""
+    """``labelled`` says what becomes of utterances that somebody has answered since the upload, ``world`` what becomes
+    of the entities, predicates, productions and templates that its lines have made, all of them."""
 
     labelled = serializers.ChoiceField(choices=["keep", "delete"], required=False)
+    world = serializers.ChoiceField(choices=["keep", "delete"], default="keep")
 
 
 class UndoneSerializer(serializers.Serializer[Any]):
@@ -218,7 +220,11 @@ class UploadViewSet(RowsViewSet):
                 f"People have answered {n_labelled:,} of its utterances since. Send labelled=keep or "
                 "labelled=delete."
             )
-        deleted = undo(row, request.user, with_labelled=sent.get("labelled") == "delete")
+        deleted = undo(
+            *(row, request.user),
+            with_labelled=sent.get("labelled") == "delete",
+            with_world=sent["world"] == "delete",
+        )
         return _changed(self.get_object(), deleted)
 
     @extend_schema(request=None, responses={200: UndoneSerializer})

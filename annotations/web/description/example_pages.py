@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from django.contrib import messages
 from django.http import HttpResponse
 from django.shortcuts import redirect, render
+from django.urls import reverse
 
 from annotations.labelling.storing_examples import NoExamples, store_examples
 from annotations.language.induction import CATEGORY, propose, with_proposal
@@ -17,6 +17,7 @@ from annotations.rows.from_rows import ontology_of, ready_templates
 from annotations.rows.known_world import known_world_of
 from annotations.web.description.example_forms import MOST_TEXT, ExamplesForm, corrected
 from annotations.web.description.proposal_presentation import shown
+from annotations.web.editing.undo import say_with_undo
 from annotations.web.forms import posted, sentence_of
 
 
@@ -45,15 +46,11 @@ def by_example(request: WorldRequest, world: World) -> HttpResponse:
                 }
                 said = [say_count(number, noun) for noun, number in counts.items() if number]
                 longer = say_count(stored.lengthened, "line") if stored.lengthened else ""
-                messages.success(
-                    request,
-                    f"Added {', '.join(said) or 'nothing'}."
-                    + (
-                        f" {longer} of the grammar and the templates say more now."
-                        if longer
-                        else ""
-                    ),
+                sentence = f"Added {', '.join(said) or 'nothing'}." + (
+                    f" {longer} of the grammar and the templates say more now." if longer else ""
                 )
+                values = {"world": world.name, "pk": stored.upload}
+                say_with_undo(request, sentence, reverse("upload_undo", kwargs=values))
             return redirect("by_example", world=world.name)
     text = form["lines"].value() or ""
     context = {

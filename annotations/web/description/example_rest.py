@@ -148,6 +148,7 @@ class StoredExamplesSerializer(serializers.Serializer[Any]):
     templates = serializers.IntegerField()
     utterances = serializers.IntegerField()
     lengthened = serializers.IntegerField()
+    upload = serializers.IntegerField(help_text="The key of the upload that undoes it.")
 
 
 class Proposals(Check):

@@ -230,3 +230,8 @@ def test_a_name_is_no_other_name_twice_nor_where_it_is_refused() -> None:
     assert not any("Kim" in each for each in names.values())
     refused = propose("call [doctor Brandt](staff)\n# [Brandt] is not [doctor Brandt]").names
     assert "Brandt" not in refused["doctor Brandt"] and "Dr Brandt" in refused["doctor Brandt"]
+
+
+def test_what_stands_in_front_of_a_command_is_no_command() -> None:
+    proposal = propose("in [bed two](bed), water the [roses](plant), then go to the [shed](place)")
+    assert signatures(proposal) == {"water": ["(plant, bed)"], "go": ["(place)"]}

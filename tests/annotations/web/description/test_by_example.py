@@ -132,7 +132,9 @@ def test_a_program_reads_the_proposal_and_stores_it(call_as, annotator, admin, w
     assert refused.json()["problems"][0]["line"] == 1
     stored = call_as(admin, "post", f"{ROUTES}/examples/", {"lines": JOINED.splitlines()})
     assert stored.status_code == 201
-    assert stored.json() == {
+    found = stored.json()
+    assert world.uploads.get().pk == found.pop("upload")
+    assert found == {
         **{"classes": 2, "entities": 3, "predicates": 1, "changed": 0},
         **{"productions": 3, "templates": 2, "utterances": 3, "lengthened": 0},
     }
