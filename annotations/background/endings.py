@@ -94,17 +94,15 @@ class Mark:
 def begin_mark(world: World) -> Mark:
     """Return the mark of somebody who wants to be told what ends from now on."""
     now = Mark(_moment(timezone.now()))
-    return Mark(now.moment, _newest(each.key for each in _endings(world, now.since, None)))
+    return Mark(
+        now.moment, _newest(each.key for each in _endings(world, now.since, "-finished_at"))
+    )
 
 
 def endings_after(world: World, mark: Mark) -> list[tuple[Ending, Mark]]:
     """Return what has ended in ``world`` beyond ``mark``, the oldest first, each with the mark after it."""
     new = sorted(
-        (
-            each
-            for each in _endings(world, mark.since, MOST_AT_ONCE + MOST_TOLD)
-            if each.key not in mark.told
-        ),
+        (each for each in _endings(world, mark.since, "finished_at") if each.key not in mark.told),
         key=lambda each: each.key.moment,
     )
     told: list[tuple[Ending, Mark]] = []
@@ -114,12 +112,12 @@ def endings_after(world: World, mark: Mark) -> list[tuple[Ending, Mark]]:
     return told
 
 
-def _endings(world: World, since: datetime, most: int | None) -> Iterator[Ending]:
-    """Yield what has ended after ``since``, of each kind of work the oldest ``most``."""
+def _endings(world: World, since: datetime, order: str) -> Iterator[Ending]:
+    """Yield what has ended after ``since``, of each kind of work the first in ``order`` that one answer may need."""
     for kind in kinds():
         all_rows: Any = rows_of(kind)  # each kind has a world
         rows = all_rows.filter(world=world, status__in=ENDED, finished_at__gt=since)
-        for row in rows.order_by("finished_at")[:most]:
+        for row in rows.order_by(order)[: MOST_AT_ONCE + MOST_TOLD]:
             is_asking = isinstance(row, Job) and row.is_waiting_for_answer
             title = row.title if isinstance(row, Job) else str(row)
             status = "waiting" if is_asking else row.status

@@ -227,6 +227,7 @@ class Job(BackgroundWork):
             models.Index(fields=["status", "queue", "queued_at"]),
             models.Index(fields=["world", "-id"]),
             models.Index(fields=["world", "kind", "-id"], name="jobs_of_kind"),
+            models.Index(fields=["world", "finished_at"], name="ended_jobs"),
         ]
 
     @property

@@ -108,6 +108,7 @@ class TrainingRun(BackgroundWork):
         indexes = [
             models.Index(fields=["status", "queue", "queued_at"]),
             models.Index(fields=["world", "-id"]),
+            models.Index(fields=["world", "finished_at"], name="ended_runs"),
         ]
         constraints = [
             models.UniqueConstraint(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
+from pathlib import Path
 
 import conllu
 import pytest
@@ -28,6 +30,7 @@ from annotations.language.world import Entity, Ontology
 from annotations.models import Upload, Utterance, Verdict
 
 GO = '( go " <room> " )'
+GUIDE = Path(__file__).parents[3] / "docs" / "guides" / "other-tools.md"
 NAMED = Anonymizer(
     Ontology(
         [
@@ -92,6 +95,31 @@ def test_label_studio_has_annotations_where_there_is_a_form(rows):
         spans = [each["value"] for each in work["result"] if each["type"] == "labels"]
         assert [(each["labels"][0], each["text"]) for each in spans] == entities(row)
         assert all(task["data"]["text"][s["start"] : s["end"]] == s["text"] for s in spans)
+
+
+def test_label_studio_takes_the_tasks_and_its_exports_come_back(tmp_path):
+    sdk = "label_studio_sdk"
+    interface = pytest.importorskip(f"{sdk}.label_interface", reason=f"needs the package {sdk}")
+    converter = pytest.importorskip(f"{sdk}.converter", reason=f"needs the package {sdk}")
+    (config,) = re.findall(r"<View>.*</View>", GUIDE.read_text("utf-8"), re.DOTALL)
+    rows = utterances([("go to the bath, please", GO), ("tea", "")])
+    tasks = json.loads(written(rows, LabelFormat.LABEL_STUDIO))
+    checks = interface.LabelInterface(config)
+    checks.validate()
+    assert all(checks.validate_task({"data": task["data"]}) for task in tasks)
+    assert all(map(checks.validate_annotation, tasks[0]["annotations"]))
+    assert all(map(checks.validate_prediction, tasks[1]["predictions"]))
+    annotated = {**tasks[0], "id": 1}
+    annotated["annotations"][0] |= {"id": 1, "completed_by": 1}
+    (tmp_path / "tasks.json").write_text(json.dumps([annotated]))
+    exporter = converter.Converter(config, None)
+    exporter.convert(str(tmp_path / "tasks.json"), str(tmp_path), "JSON_MIN", is_dir=False)
+    exporter.convert(str(tmp_path / "tasks.json"), str(tmp_path), "CONLL2003", is_dir=False)
+    sheet = read_upload((tmp_path / "result.json").read_text("utf-8"))
+    (row,) = sheet.records
+    assert (row.values[sheet.column], row.values[sheet.form_column]) == (rows[0].text, GO)
+    words = (tmp_path / "result.conll").read_text("utf-8")
+    assert [row.values["text"] for row in read_upload(words).records] == ["go to the bath , please"]
 
 
 @given(rows=ROWS)
