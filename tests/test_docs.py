@@ -285,6 +285,13 @@ def test_the_file_for_citations_names_this_version_and_the_paper():
         assert each in page and each
 
 
+def test_installing_names_every_extra_that_is_not_for_developers():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    page = (DOCS / "guides" / "installing.md").read_text(encoding="utf-8").partition("## Extras")[2]
+    extras = set(re.findall(r"^\| `(\w+)` \|", page.partition("\n## ")[0], re.MULTILINE))
+    assert extras == project["optional-dependencies"].keys() - {"docs", "test"}
+
+
 def test_what_troubleshooting_quotes_is_what_the_program_says():
     page = (DOCS / "guides" / "troubleshooting.md").read_text(encoding="utf-8")
     paths = [
