@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from collections.abc import Iterator
 
 from django.db.models import Count, Exists, F, Max, Min, OuterRef, Window
 from django.db.models.functions import RowNumber
@@ -13,6 +14,7 @@ from annotations.models import Command, Entity, LogicalForm, World
 from annotations.rows.kept import kept
 
 _DIGITS = "0123456789"
+MOST_WORDINGS = 20  # of a form that are looked at
 
 
 def example_commands(world: World, how_many: int) -> list[str]:
@@ -21,6 +23,17 @@ def example_commands(world: World, how_many: int) -> list[str]:
     The same on every call. A command with a class of which the world has no entity is left out, and so is one that says
     less than a robot needs, as "follow someone" does.
     """
+    return [texts[0] for texts in _wordings(world, how_many, 1) if texts][:how_many]
+
+
+def example_rewordings(world: World, how_many: int) -> list[tuple[str, str]]:
+    """Return at most ``how_many`` such commands, each with another wording of the same form, where there is one."""
+    wordings = _wordings(world, 2 * how_many, MOST_WORDINGS)
+    return [(texts[0], texts[-1]) for texts in wordings if len(texts) > 1][:how_many]
+
+
+def _wordings(world: World, how_many: int, most: int) -> Iterator[list[str]]:
+    """Yield the ``most`` shortest commands of the shortest form of each action, those whose classes have entities."""
     shortest = kept(
         ("shortest forms", world.pk, world.revision, world.generations, how_many),
         lambda: _shortest_forms(world, 2 * how_many),
@@ -28,12 +41,15 @@ def example_commands(world: World, how_many: int) -> list[str]:
     )
     keys = [key for key, _ in shortest]
     of_form = Window(RowNumber(), partition_by=F("logical_form"), order_by=("length", "pk"))
-    rows = Command.objects.filter(logical_form__in=keys).annotate(place=of_form).filter(place=1)
-    texts = {each.logical_form_id: each.anonymized_text for each in rows}
-    ordered = [texts[key] for key in keys if key in texts]
-    entities = _two_of_each_class(world, {each for text in ordered for each in _classes_in(text)})
-    known = (text for text in ordered if all(each in entities for each in _classes_in(text)))
-    return [_name_entities(text, entities) for text in known][:how_many]
+    rows = Command.objects.filter(logical_form__in=keys).annotate(place=of_form)
+    texts: defaultdict[int, list[str]] = defaultdict(list)
+    for each in rows.filter(place__lte=most).order_by("place"):
+        texts[each.logical_form_id].append(each.anonymized_text)
+    classes = {each for some in texts.values() for text in some for each in _classes_in(text)}
+    entities = _two_of_each_class(world, classes)
+    for key in keys:
+        known = (text for text in texts[key] if all(each in entities for each in _classes_in(text)))
+        yield [_name_entities(text, entities) for text in known]
 
 
 def _shortest_forms(world: World, how_many: int) -> list[tuple[int, int]]:

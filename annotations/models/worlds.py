@@ -120,7 +120,7 @@ class World(models.Model):
         declared: dict[str, Predicate]  # where ``form_presentation`` keeps them
         classes: EntityClasses
 
-    # Whether a new one has no classes of entities: it is begun by hand, or by files that bring them.
+    # Whether a new one has no classes of entities and no recipes: it is begun by hand, or by files that bring them.
     is_bare = False
 
     objects = WorldQuerySet.as_manager()
@@ -132,14 +132,13 @@ class World(models.Model):
         return self.name
 
     def save(self, *args: Any, **kwargs: Any) -> None:
-        """Store the world; a new one with a household's recipes, and its classes of entities unless it ``is_bare``."""
+        """Store the world; a new one with a household's classes of entities and recipes unless it ``is_bare``."""
         is_new = self._state.adding
         super().save(*args, **kwargs)
-        if is_new:
+        if is_new and not self.is_bare:
             from annotations.language.plans import default_book
 
-            if not self.is_bare:
-                self.entity_classes.add_of_household(self)
+            self.entity_classes.add_of_household(self)
             self.primitives.start_book(self, default_book())
             self.recipes.start_book(self, default_book())
 

@@ -170,14 +170,16 @@ def predicate_of(row: models.Predicate) -> Predicate:
 
 
 def recipe_book_of(world: models.World) -> RecipeBook:
-    """Return the recipe book of ``world``; the shipped one where it has no recipes of its own.
+    """Return the recipe book of ``world``; without recipes of its own what the shipped one has for its predicates.
 
     Raises:
         LanguageError: a stored row that cannot be read.
     """
     primitives = world.primitives.values_list("text", flat=True)
     recipes = world.recipes.values_list("text", flat=True)
-    return book_of(primitives, recipes) if recipes else default_book()
+    if recipes:
+        return book_of(primitives, recipes)
+    return default_book().of_actions(world.predicates.values_list("name", flat=True))
 
 
 def book_of(primitives: Iterable[str], recipes: Iterable[str]) -> RecipeBook:

@@ -51,9 +51,13 @@ PAPER_PROBES = (
     ProbeText(ProbeKind.PAPER, "Bring an umbrella to him"),
 )
 
+_PAPER_VERBS = {each.text.split()[0].lower() for each in PAPER_PROBES if not each.expects_unknown}
+
 
 def make_probes(utterances: Sequence[str], count: int, seed: int = 0) -> tuple[ProbeText, ...]:
     """Return the probes of the paper and at most ``count`` of each other kind.
+
+    Those of the paper ask a robot to do something; they are left out where no utterance has one of their verbs.
 
     Args:
         utterances: texts to shuffle and to truncate; a probe is never one of them.
@@ -66,8 +70,10 @@ def make_probes(utterances: Sequence[str], count: int, seed: int = 0) -> tuple[P
     shuffled = islice(_shuffle(utterances, order, known, random), count)
     truncated = islice(_truncate(utterances, order, known, random), count)
     unrelated = random.sample(unrelated_sentences(), min(count, len(unrelated_sentences())))
+    words = {word for text in known for word in text.split()}
+    paper = PAPER_PROBES if words & _PAPER_VERBS else ()
     return (
-        *PAPER_PROBES,
+        *paper,
         *(ProbeText(ProbeKind.EMPTY, text, expects_unknown=True) for text in EMPTY_TEXTS[:count]),
         *shuffled,
         *truncated,

@@ -54,6 +54,13 @@ class RecipeBook:
         """Return the primitive of a name; None if there is none."""
         return self._by_name.get(name)
 
+    def of_actions(self, actions: Collection[str]) -> RecipeBook:
+        """Return what is about some actions: their recipes, those that every world has, and the primitives called."""
+        wanted = {*actions, ASK, AFTER_COMMANDS}
+        recipes = tuple(each for each in self.recipes if each.pattern.action in wanted)
+        called = {call.primitive for each in recipes for call in each.calls}
+        return RecipeBook(tuple(each for each in self.primitives if each.name in called), recipes)
+
     def recipes_of(self, action: str) -> Sequence[Recipe]:
         """Return the recipes of an action that can be used: those without an error."""
         return self._usable.get(action, ())

@@ -12,6 +12,7 @@ from django.utils import timezone
 from annotations.campaigns.addresses import BadAddress, origins_in, require_public_address
 from annotations.campaigns.changing import ABOUT, CHANGEABLE, END, MARKET, TEXTS, has_consents
 from annotations.campaigns.launching import PromptChoice
+from annotations.generation.example_commands import example_rewordings
 from annotations.language.texts import ENCODINGS
 from annotations.models import Campaign, World
 from annotations.models.campaigns import (
@@ -42,10 +43,7 @@ INTRODUCTION = (
     "You will see commands that somebody could give to a robot. Say each of them in your own words: "
     "use other words or another order, but ask for the same. Write as you would speak."
 )
-EXAMPLES = """\
-- *bring me the apple from the table* → **could you get the apple that is on the table**
-- *tell me how many people are in the kitchen* → **count the people in the kitchen and say the number**
-"""
+EXAMPLES = 2  # commands of the world that are shown with another wording
 CONSENT = (
     "What you write is used for research and may be published. Nobody asks for your name: you are known by a "
     "random number. You may stop at any time."
@@ -187,7 +185,7 @@ class CampaignForm(forms.Form):
     allows_retake = forms.BooleanField(label="People may do more than one task", required=False)
     seed = number_field("Seed", 0, 2**31 - 1, "The same seed draws the same prompts.")
     introduction = text_field("Introduction", INTRODUCTION)
-    examples = text_field("Examples", EXAMPLES)
+    examples = text_field("Examples", "")
     consent = text_field("Consent", CONSENT)
     thanks = text_field("Thanks", THANKS)
 
@@ -202,6 +200,7 @@ class CampaignForm(forms.Form):
     def __init__(self, world: World, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
         choice_field(self, "task_categories").choices = task_categories_with_commands(world)
+        self.fields["examples"].initial = examples_of(world)
 
     def clean_ends_at(self) -> datetime | None:
         """Return the end of the last day, which must lie ahead. The time zone is that of the person; over REST it
@@ -247,7 +246,15 @@ class CampaignForm(forms.Form):
         """Return the form as it is, filled in, for a campaign that ends by itself with ``TEN_TASKS``."""
         values = {key: field.initial for key, field in cls.base_fields.items()}
         task = cls.base_fields["task_size"].initial + cls.base_fields["free_commands"].initial
-        return cls(world, {**values, "name": name, "most_submissions": TEN_TASKS * task})
+        return cls(
+            world,
+            {
+                **values,
+                "name": name,
+                "most_submissions": TEN_TASKS * task,
+                "examples": examples_of(world),
+            },
+        )
 
     def group(self, names: tuple[str, ...]) -> list[forms.BoundField]:
         return [self[name] for name in names]
@@ -275,6 +282,12 @@ class CampaignForm(forms.Form):
     @property
     def texts(self) -> list[forms.BoundField]:
         return self.group(TEXTS)
+
+
+def examples_of(world: World) -> str:
+    """Return examples for contributors: commands of the world in two wordings; nothing where none has two."""
+    pairs = example_rewordings(world, EXAMPLES)
+    return "".join(f"- *{command}* → **{other}**\n" for command, other in pairs)
 
 
 def public_address(address: str) -> str:

@@ -13,6 +13,7 @@ from django.urls import reverse
 from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 
+from annotations.generation.example_commands import example_commands
 from annotations.labelling.upload_reading import MOST_BYTES, UploadFormat
 from annotations.labelling.utterance_deletion import delete_utterances, restore_utterances
 from annotations.labelling.utterance_uploads import (
@@ -50,9 +51,7 @@ class UtterancesForm(forms.Form):
         label="Utterances",
         required=False,
         max_length=MOST_BYTES,
-        widget=forms.Textarea(
-            attrs={"rows": 10, "placeholder": "could you get me the red mug from the kitchen"}
-        ),
+        widget=forms.Textarea(attrs={"rows": 10}),
         help_text="One a line. JSON and rows of a table are shown first as they would be read.",
     )
     file = forms.FileField(
@@ -62,6 +61,11 @@ class UtterancesForm(forms.Form):
         help_text="Plain text, CSV, TSV, JSON or JSON Lines, such as the exports of doccano and Label Studio. "
         "You see what is read before anything is stored.",
     )
+
+    def __init__(self, world: World, *args: Any, **options: Any):
+        super().__init__(*args, **options)
+        if examples := example_commands(world, 1):
+            self.fields["text"].widget.attrs["placeholder"] = examples[0]
 
     def clean_file(self) -> Any:
         file = self.cleaned_data["file"]
@@ -116,7 +120,7 @@ def utterance(request: WorldRequest, world: World, pk: int) -> HttpResponse:
 @world_view(Duty.ANNOTATE, READ_AND_WRITE, does="add utterances")
 def utterances_new(request: WorldRequest, world: World) -> HttpResponse:
     """Take utterances in. Pasted lines are stored at once, all or none; a file or a table is shown first."""
-    form = UtterancesForm(posted(request), request.FILES or None)
+    form = UtterancesForm(world, posted(request), request.FILES or None)
     context: dict[str, Any] = {"form": form}
     if form.is_bound and form.is_valid():
         name = form.file_name

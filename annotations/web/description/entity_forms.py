@@ -37,6 +37,9 @@ def class_field(world: World) -> forms.ChoiceField:
     )
 
 
+ATTRIBUTE_LINES = "One a line: a name, a colon, a value."
+
+
 class LinesField(forms.CharField):
     """A text area whose value is the list of its lines, without empty and repeated ones."""
 
@@ -81,9 +84,7 @@ class EntityForm(NounForm):
     aliases = LinesField(
         max_length=20_000, help_text="Other names that people use for it, one a line."
     )
-    attributes = AttributeLinesField(
-        max_length=20_000, help_text="One a line, such as category: drinks or room: kitchen."
-    )
+    attributes = AttributeLinesField(max_length=20_000, help_text=ATTRIBUTE_LINES)
 
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
@@ -143,15 +144,13 @@ class EntitiesForm(forms.Form):
     lines = forms.CharField(
         label="Entities",
         max_length=200_000,
-        widget=forms.Textarea(
-            attrs={"rows": 10, "placeholder": "coke | coca cola, soda\ngreen tea"}
-        ),
+        widget=forms.Textarea(attrs={"rows": 10, "placeholder": "name | other name, third name"}),
         help_text="One a line: the name, and after | its other names with commas between them.",
     )
     attributes = AttributeLinesField(
         max_length=20_000,
         label="Attributes of all of them",
-        help_text="One a line, such as category: drinks or room: kitchen.",
+        help_text=ATTRIBUTE_LINES,
     )
     once = forms.CharField(widget=forms.HiddenInput, required=False, max_length=60, initial=new_key)
 

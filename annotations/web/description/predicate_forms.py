@@ -40,7 +40,7 @@ class PredicateForm(NounForm):
     signatures = forms.CharField(
         label="Arguments",
         max_length=5_000,
-        widget=forms.Textarea(attrs={"rows": 3, "placeholder": "(object, room?)"}),
+        widget=forms.Textarea(attrs={"rows": 3}),
     )
     gloss = forms.CharField(
         label="English",
@@ -53,6 +53,8 @@ class PredicateForm(NounForm):
     def __init__(self, world: World, *args: Any, **options: Any):
         super().__init__(world, *args, **options)
         self.classes = classes_of(world)
+        if len(first_two := self.classes.tokens[:2]) == 2:
+            self.fields["signatures"].widget.attrs["placeholder"] = "({}, {}?)".format(*first_two)
         self.fields["signatures"].help_text = (
             "One way to use it a line; ? marks arguments at the end that may be missing. "
             f"Kinds: {', '.join(known_kinds(self.classes))}."

@@ -45,9 +45,7 @@ class ProductionForm(NounForm):
     edited = ("expansion",)
     key = "nonterminal"
 
-    nonterminal = forms.CharField(
-        max_length=MAX_NONTERMINAL, help_text="Without the dollar sign, such as vbfind."
-    )
+    nonterminal = forms.CharField(max_length=MAX_NONTERMINAL, help_text="Without the dollar sign.")
     expansion = forms.CharField(
         max_length=MAX_PATTERN,
         widget=forms.Textarea(attrs={"rows": 2, "data-editor": "pattern"}),

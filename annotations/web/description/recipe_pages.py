@@ -17,10 +17,11 @@ from annotations.editing.recipe_books import (
     version_of,
 )
 from annotations.generation.recipe_check import problems_by_row
-from annotations.language.plans import default_book, read_primitive, read_recipe, shipped_books
+from annotations.language.plans import read_primitive, read_recipe, shipped_books
 from annotations.language.texts import Problem, Refusal, say_count
 from annotations.models import Duty, World
 from annotations.people.access import WRITE, WorldRequest, world_view
+from annotations.rows.from_rows import recipe_book_of
 from annotations.web.description.recipe_forms import (
     RecipeBookForm,
 )
@@ -40,7 +41,7 @@ def recipes(request: WorldRequest, world: World) -> HttpResponse:
         (row, read_primitive(row.text), problems.get(("primitive", row.pk), []))
         for row in world.primitives.all()
     ]
-    book, proposed = default_book(), proposals_for(world)
+    book, proposed = recipe_book_of(world), proposals_for(world)
     context: dict[str, Any] = {
         "recipes": own_recipes or [_shipped(each) for each in book.recipes],
         "primitives": own_primitives

@@ -19,8 +19,9 @@ utterances = st.lists(
 def test_probes_are_made_of_utterances_and_are_never_one_of_them(texts, count, seed):
     probes = make_probes(texts, count, seed)
     assert probes == make_probes(texts, count, seed)
-    assert probes[: len(PAPER_PROBES)] == PAPER_PROBES
-    for probe in probes[len(PAPER_PROBES) :]:
+    of_paper = [probe for probe in probes if probe.kind is ProbeKind.PAPER]
+    assert of_paper == (list(PAPER_PROBES) if "bring" in " ".join(texts).split() else [])
+    for probe in probes[len(of_paper) :]:
         if probe.base is None:
             assert probe.expects_unknown
             continue
@@ -34,6 +35,11 @@ def test_probes_are_made_of_utterances_and_are_never_one_of_them(texts, count, s
             assert 1 <= len(kept) <= len(words) // 2
     for kind in set(ProbeKind) - {ProbeKind.PAPER}:
         assert sum(probe.kind is kind for probe in probes) <= count
+
+
+def test_a_world_that_brings_nothing_is_not_asked_the_texts_of_the_paper():
+    texts = [f"water the tomatoes in bed {number}" for number in range(9)]
+    assert ProbeKind.PAPER not in {probe.kind for probe in make_probes(texts, 5)}
 
 
 def test_there_are_probes_of_every_kind():

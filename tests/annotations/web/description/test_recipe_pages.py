@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from annotations.language.plans import DEFAULT_BOOK, default_book, shipped_books
-from annotations.models import Recipe
+from annotations.models import Predicate, Recipe
 from annotations.rows.from_rows import recipe_book_of
 from tests.greenhouse import fill_greenhouse
 from tests.notices import levels
@@ -37,11 +37,15 @@ def test_a_new_world_starts_with_the_book_that_ships(browse, world):
 def test_a_world_without_recipes_uses_the_book_that_ships(browse, world):
     world.recipes.all().delete()
     world.primitives.all().delete()
-    assert recipe_book_of(world) == default_book()
+    ours = default_book().of_actions(())
+    assert recipe_book_of(world) == ours and ours.recipes
+    Predicate.objects.create(world=world, name="go", kind="action", signatures=[["room"]])
+    used = recipe_book_of(world)
+    assert {each.pattern.action for each in used.recipes if each not in ours.recipes} == {"go"}
     page = browse.get(PAGE)
     assert page.context["shipped"].name == DEFAULT_BOOK and not page.context["has_own"]
     shown = [value for row, value, _ in page.context["recipes"] if row is None]
-    assert shown == list(default_book().recipes) and f"{PAGE}new/" not in page.content.decode()
+    assert shown == list(used.recipes) and f"{PAGE}new/" not in page.content.decode()
     page = browse.post(
         f"{PAGE}book/",
         {"shipped": DEFAULT_BOOK, "version": page.context["version"]},
@@ -178,5 +182,6 @@ def test_a_world_without_rows_gets_those_that_it_uses_with_what_is_proposed(brow
     fill_greenhouse(world)
     world.recipes.all().delete()
     world.primitives.all().delete()
+    used = recipe_book_of(world)
     browse.post(f"{PAGE}proposed/", {"action": "fetch"})
-    assert world.recipes.count() == len(default_book().recipes) + 1
+    assert world.recipes.count() == len(used.recipes) + 1
