@@ -30,6 +30,7 @@ from annotations.models import (
     World,
 )
 from annotations.rows.history import ADDED, DELETED, history_of
+from annotations.rows.row_kinds import kind_of_model
 
 # In the order in which they are deleted: what uses others comes first.
 MODELS: tuple[type[Editable], ...] = (
@@ -56,7 +57,7 @@ class Brought:
     def counts(self) -> str:
         """What would be taken back, as part of a sentence; empty where there is nothing."""
         said = [
-            say_count(len(rows), str(model._meta.verbose_name))
+            say_count(len(rows), kind_of_model(model).singular)
             for model, rows in reversed(self.added.items())
             if rows
         ]

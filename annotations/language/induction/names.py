@@ -65,7 +65,8 @@ def _names(text: str, noun: str) -> Iterator[str]:
     if name and (text.split()[-1].isdigit() or text.split()[-1].lower() in NUMBERS):
         before, _, number = text.rpartition(" ")
         yield f"{before} number {number}"
-    if noun and _is_name(text) and noun not in text.lower().split():
+    # Nobody says "the staff doctor Brandt".
+    if noun and first[0].isupper() and _is_name(text) and noun not in text.lower().split():
         yield f"{noun} {text}"
         if has_title:
             yield f"{noun} {name}"

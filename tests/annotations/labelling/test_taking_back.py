@@ -42,7 +42,7 @@ def test_all_that_lines_have_made_is_taken_back_and_comes_back(world, admin):
     then = stored(world, THEN, admin)
     after = stored_world()
     assert brought_by(then).counts == (
-        "1 entity class, 2 entities, 1 predicate, 2 productions, 2 semantic templates, 2 changed lines"
+        "1 class, 2 entities, 1 predicate, 2 productions, 2 templates, 2 changed lines"
     )
     for _ in range(2):
         undo(then, admin, with_labelled=True, with_world=True)

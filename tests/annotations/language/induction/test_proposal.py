@@ -203,7 +203,6 @@ feed [goat Ella](animal)
         ("call the doctor Brandt", '(call "doctor Brandt")'),
         ("call Dr. Brandt", '(call "doctor Brandt")'),
         ("call Brandt", '(call "doctor Brandt")'),
-        ("call the staff Brandt", '(call "doctor Brandt")'),
         ("call Brandt the doctor", '(call "doctor Brandt")'),
         ("guide the patient Alvarez to the room nine", '(guide "Mrs Alvarez" "room nine")'),
         ("guide Missus Alvarez to room number nine", '(guide "Mrs Alvarez" "room nine")'),
