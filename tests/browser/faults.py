@@ -106,7 +106,7 @@ CRUMBS = """() => {
 OUT_OF_LINE = """() => {
   const [top, title, tabs] = [".topbar", "h1", "main .tabs"].map((each) => document.querySelector(each));
   const head = title?.closest(".page-head");
-  if (!top || !head) return [];
+  if (!top || !head || (innerWidth < 800 && head.closest(".review"))) return [];  // Review is denser on a phone
   const from = document.querySelector("main").getBoundingClientRect().top;
   const at = (element) => Math.round(element.getBoundingClientRect().top - from);
   const gap = Math.round(tabs && head.contains(tabs) ? at(tabs) - at(title) - title.offsetHeight : 8);
