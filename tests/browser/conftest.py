@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from annotations.models import User
 from parser_service.runs import run_requests
-from tests.browser.chromium import CHROMIUM, MISSING
+from tests.browser.chromium import CHROMIUM, FIREFOX, FIREFOX_MISSING, MISSING
 from tests.browser.faults import AXE
 from tests.browser.variants import Variant
 from tests.parser_service.worker_process import RunningWorker
@@ -28,12 +28,17 @@ BUNDLE = Path(__file__).resolve().parents[2] / "static" / "dist" / "main.js"
 
 
 @pytest.fixture(scope="session")
-def browser_type_launch_args() -> dict[str, object]:
-    """The machine's Chromium; the tests are skipped without it or without the built front end."""
-    if not CHROMIUM:
-        pytest.skip(MISSING)
+def browser_type_launch_args(browser_name: str) -> dict[str, object]:
+    """The machine's Chromium, or Firefox with ``--browser firefox``; the tests are skipped without it or without the
+    built front end."""
     if not BUNDLE.exists():
         pytest.skip("needs the built front end: make install")
+    if browser_name == "firefox":
+        if not FIREFOX:
+            pytest.skip(FIREFOX_MISSING)
+        return {"executable_path": FIREFOX, "channel": "moz-firefox"}
+    if not CHROMIUM:
+        pytest.skip(MISSING)
     return {"executable_path": CHROMIUM, "args": ["--no-sandbox"]}
 
 

@@ -55,10 +55,6 @@ _SHAPED = re.compile(
     "[\u0132\u0133\u017f\ufb00-\ufb06\uff10-\uff19\uff21-\uff3a\uff41-\uff5a\U0001d400-\U0001d7ff]+"
 )
 _LINE_END = re.compile("\r\n|[\r\x85\u2028\u2029]")
-# Letters and digits in another shape: ligatures, the long s, full-width and mathematical ones.
-_SHAPED = re.compile(
-    "[\u0132\u0133\u017f\ufb00-\ufb06\uff10-\uff19\uff21-\uff3a\uff41-\uff5a\U0001d400-\U0001d7ff]+"
-)
 _ODD_LINE_END = re.compile("[\x85\u2028\u2029]")
 # Where more marks than MOST_MARKS can be, which is seldom.
 _MANY_MARKS = re.compile(r"[^\x00-\x7f]{31,}")

@@ -33,7 +33,7 @@ def visit() -> dict[str, object]:
         path = waiting.popleft()
         answer = client.get(path)
         visited += 1
-        if answer.status_code not in (200, 302):
+        if answer.status_code not in (200, 204, 302):
             faults[path] = answer.status_code
         answer.close()
         if answer.streaming or "html" not in answer.get("Content-Type", ""):
