@@ -334,6 +334,7 @@ SPECTACULAR_SETTINGS = {
         "WorkKind": "annotations.models.queueing.work_kind_choices",
         "WorkSubjectKind": ["utterance", "template", "paraphrase"],
         "FindingSubjectKind": ["utterance", "paraphrase"],
+        "KeepOrDelete": ["keep", "delete"],
         "AnswerDecision": ["act", "confirm", "ask", "refuse"],
         "Encoding": "annotations.language.texts.decoding.ENCODINGS",
     },
