@@ -142,7 +142,7 @@ def test_the_rail_says_how_old_a_number_is_once_that_is_minutes(large, annotator
     now = counts._kept[large.pk]
     counts._kept[large.pk] = replace(now, computed_at=now.computed_at - 200, seconds=1e6)
     told = said()
-    assert "3" in told["Utterances"]
+    assert "3" in told["Label"]
     assert not told["Splits"]
 
 

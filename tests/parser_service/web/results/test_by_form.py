@@ -13,7 +13,7 @@ from parser_service.runs.score_evidence import compare_scores
 from tests.parser_service.web.results.test_result_pages import by_form
 from tests.sample_world import scored_run
 
-TOGETHER = "unseen 50.0 · known 75.0"
+TOGETHER = "unseen&nbsp;50.0 · known&nbsp;75.0"
 
 
 @pytest.fixture
@@ -33,14 +33,14 @@ def text_of(client, path: str) -> str:
 def test_pages_show_the_harmonic_mean_with_what_it_is_of(path, run, adam):
     page = text_of(adam, path)
     assert "60.0" in page and TOGETHER in page
-    assert not re.search(r"known 75\.0(?: |<[^>]*>)*[,.;]", page)
+    assert not re.search(r"known(?: |&nbsp;)75\.0(?: |<[^>]*>)*[,.;]", page)
 
 
 @pytest.mark.parametrize("path", ["runs/", "runs/new/?parser=knn", "compare/", "promotion/", ""])
 def test_pages_say_where_known_forms_were_not_held_out(path, run, adam):
     run.evaluations.filter(part="known").delete()
     page = text_of(adam, path)
-    assert "unseen forms alone" in page and "unseen 50.0" not in page
+    assert "unseen forms alone" in page and "unseen&nbsp;50.0" not in page
 
 
 def test_other_splits_have_one_figure(sample, adam):

@@ -174,7 +174,7 @@ def test_by_form_a_cell_shows_the_harmonic_mean_and_both_that_it_is_of(sample, a
     assert figure.low < 60 < figure.high
     page = " ".join(anna.get("/w/home/results/").content.decode().split())
     assert "<b>60.0</b>" in page
-    assert "unseen 50.0 · known 75.0" in page
+    assert "unseen&nbsp;50.0 · known&nbsp;75.0" in page
     (row,) = csv.DictReader(io.StringIO(anna.get("/w/home/results.csv").content.decode()))
     assert [float(row[name]) for name in ("percent", "unseen", "known")] == pytest.approx(
         [60, 50, 75]
