@@ -17,3 +17,8 @@ const sizes = new ResizeObserver((entries) => entries.forEach(({ target }) => ma
 export function watchScrolling(wrap) {
   sizes.observe(wrap);
 }
+
+// A tab that can be seen in part takes the focus where it stands; all of it comes into view.
+document.addEventListener("focusin", ({ target }) => {
+  if (target.closest(".tabs")) target.scrollIntoView({ block: "nearest", inline: "nearest" });
+});

@@ -27,6 +27,7 @@ PACKAGES = (annotations, gpsr_site, parser_service)
 READING = {
     *("audit_labels", "benchmark", "backup", "expand_grammar", "export_split", "export_world"),
     *("export_rephrased", "export_vocabulary", "leakage", "parse", "parse_server", "serve", "work"),
+    *("export_run", "fetch_data"),
 }
 # They make an installation: from a backup, whose log it becomes, or from an older version.
 RESTORING = {"restore", "migrate"}

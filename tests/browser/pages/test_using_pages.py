@@ -85,7 +85,7 @@ def test_the_keys_dialog_promises_what_works(page_of, live_server, annotator):
     expect(page.locator("#keys")).to_be_visible()
     keys = set(page.locator("#keys kbd").all_inner_texts())
     of_lists, of_editors = (
-        {"/", "j", "k", "n", "p", "c", "Enter", "?"},
+        {"/", "j", "k", "n", "p", "c", "x", "z", "Enter", "?"},
         {"Ctrl", ".", "F8", "Alt", "↑", "↓", "Shift", "F", "\\"},
     )
     assert keys == of_lists | of_editors

@@ -57,7 +57,7 @@ def test_no_page_scrolls_sideways(state, page_of, live_server, sample, admin):
     """The places and tabs of the rail, the banner open and closed; pages/test_every_page.py has all other pages."""
     for queue in STATES[state]:
         work(queue)
-    page = page_of(admin)
+    page = page_of(admin, reduced_motion="reduce")  # or the rail is measured on its way out
     faults = []
     for entry in all_entries():
         page.context.clear_cookies(name="closed_notice")
