@@ -110,6 +110,7 @@ def other_package(encoder, tmp_path, monkeypatch):
     shutil.copytree(encoder, package / "model")
     (package / "__init__.py").touch()
     monkeypatch.syspath_prepend(package.parent)
+    monkeypatch.delitem(sys.modules, REAL, raising=False)  # where another test has loaded it
     return package
 
 
