@@ -51,14 +51,19 @@ def train_today(world: World, by: User, progress: Progress = UNWATCHED) -> Answe
 def split_of_today(world: World, by: User | None, progress: Progress = UNWATCHED) -> Split:
     """Return the usual split of ``world``, frozen anew where that would change it; a first one where there is none."""
     progress = PartOfProgress(progress, 0, 1)  # the run is still to be started
+    name = free_name(world)  # first, so that two who ask at once take one name, and get one split
     usual = usual_split(world)
     if usual is None:
-        return freeze_split(world, free_name(world), by=by, progress=progress)
+        return freeze_split(world, name, by=by, progress=progress)
     newest = last_of(usual)
     try:
         return freeze_anew(newest, by, progress)
     except Unchanged:
         return newest
+    except LanguageError:
+        if (meanwhile := last_of(newest)) != newest:  # somebody else has just done it
+            return meanwhile
+        raise
 
 
 def train_of(job: Job, progress: JobProgress) -> dict[str, Any]:

@@ -14,10 +14,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from typing import TypeAlias
 
 from annotations.language.forms import Form, read_form, require_token, to_template
 from annotations.language.texts import (
+    ARTICLES,
     ASKING_WORDS,
     CONDITIONAL_PHRASES,
     COURTESY_CLOSINGS,
@@ -134,7 +136,7 @@ def read_example(line: str, position: Position | None = None) -> Example:
     require_length(line, "line", MOST_CHARACTERS, place)
     line = normalise_line(line)
     said, equals, meaning = line.partition(" = ")
-    parts = tuple(_with_titles(_parts(said, place)))
+    parts = tuple(_with_titles(_without_articles(_parts(said, place))))
     if all(part == "," for part in parts):
         raise LanguageError("the line says nothing", place, f"write a command, as in: {EXAMPLE}")
     if len(parts) > MOST_PARTS:
@@ -172,6 +174,17 @@ def _parts(said: str, place: Position) -> Iterator[Part]:
                         f"“{word[:40]}” is no word of a command", here, "write it without < and $"
                     )
                 yield word
+
+
+def _without_articles(parts: Iterable[Part]) -> Iterator[Part]:
+    """Yield the parts with the article of a mark before it: the [dry dock]. So things are called by their names."""
+    for part in parts:
+        if isinstance(part, Mark):
+            *before, last = part.text.split()
+            articles = list(takewhile(ARTICLES.__contains__, before))
+            yield from articles
+            part = replace(part, text=" ".join([*before[len(articles) :], last]))
+        yield part
 
 
 def _with_titles(parts: Iterable[Part]) -> Iterator[Part]:

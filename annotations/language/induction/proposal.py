@@ -410,8 +410,8 @@ def _predicate(
 ) -> Predicate:
     """Return a predicate with the signatures that the rules use, and how they say it in English.
 
-    ``english`` has the gloss patterns that somebody has written. One of the world is as it is there, unless it takes
-    other arguments as well now.
+    ``english`` has the gloss patterns that somebody has written. One of the world is otherwise as it is there, unless
+    it takes other arguments as well now.
     """
     own = known.predicates.get(name)
     before = own.signatures if own else ()
@@ -419,7 +419,7 @@ def _predicate(
         {signature_of(r.form) for r in rules if isinstance(r.form, Application)} - {*before}
     )
     if own is not None and not new:
-        return own
+        return replace(own, gloss=english.get(name, own.gloss))
     said: dict[int, str] = {}
     for rule in sorted(rules, key=lambda each: len(each.words)):
         form = rule.form

@@ -11,6 +11,7 @@ from annotations.language.texts.stand_ins import STAND_IN, read_stand_in, stand_
 from annotations.language.texts.word_lists import (
     BEGINNINGS_AFTER_A,
     BEGINNINGS_AFTER_AN,
+    DETERMINERS,
     LETTERS_AFTER_AN,
     NO_ENDINGS,
     NOUNS_IN_I_OR_U,
@@ -82,10 +83,12 @@ def article(noun: str) -> str:
 
 
 def definite(noun: str) -> str:
-    """Return a noun phrase behind ``the``; ``bed two`` and ``shelf 3`` are names, and stay alone."""
+    """Return a noun phrase behind ``the``; ``bed two`` and ``shelf 3`` are names, and stay alone, as does what has a
+    determiner already."""
     before, _, last = noun.rpartition(" ")
     is_numbered = bool(before) and (last.isdigit() or last.lower() in NUMBERS)
-    return noun if is_numbered else f"the {noun}"
+    is_determined = noun.partition(" ")[0].lower() in DETERMINERS
+    return noun if is_numbered or is_determined else f"the {noun}"
 
 
 def say_count(count: int, noun: str) -> str:

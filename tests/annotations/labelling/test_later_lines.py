@@ -211,3 +211,18 @@ def test_templates_of_a_shipped_world_are_lengthened(household, admin, line, sai
     assert_understands(household, {said: "bring"})
     again = propose(line, known_world_of(World.objects.get(pk=household.pk)))
     assert again.understood == (1,) and not again.changes
+
+
+def test_english_of_an_action_that_the_world_has_is_changed_where_somebody_writes_it(world, admin):
+    store_examples(world, "water the [roses](plant)\nwater the [basil](plant)", admin)
+    before = world.predicates.get(name="water")
+    store_examples(world, "water the [roses]\n# water: give water to {1}", admin)
+    after = world.predicates.get(name="water")
+    assert (
+        (after.gloss, after.signatures)
+        == ("give water to {1}", before.signatures)
+        != (
+            before.gloss,
+            before.signatures,
+        )
+    )

@@ -12,6 +12,7 @@ from parser_service.models import TrainingRun
 from parser_service.runs.promoting import promote
 from parser_service.runs.recommended import advise
 from parser_service.runs.training_today import train_of, train_today
+from tests.at_once import at_once
 from tests.launched_campaigns import fill_household
 from tests.replaying import made_once
 from tests.sample_world import make_paraphrase
@@ -63,6 +64,16 @@ def test_what_was_promoted_is_trained_again_with_what_people_wrote(household, ad
     assert (again.parser, again.config) == (run.parser, run.config)
     assert again.split.examples.filter(source="paraphrased").count() == 1
     assert train_today(household, admin)[0].split == again.split
+
+
+@pytest.mark.services
+def test_twenty_presses_at_once_make_one_split_and_one_run(transactional_db, world, admin):
+    household = made_once(fill_household, world)
+    for presses in range(1, 3):  # with nothing frozen, then with a split that is out of date
+        runs = at_once(*[lambda: train_today(household, admin)[0].pk] * 20)
+        assert len(set(runs)) == 1 and None not in runs
+        assert household.splits.count() == household.runs.count() == presses
+        say_otherwise(household)
 
 
 def test_a_large_world_is_frozen_by_a_job_that_starts_the_run(household, adam, monkeypatch):

@@ -33,6 +33,8 @@ def test_an_example_reads_back_from_its_line(
         ("water the [roses]", ("water", "the", Mark("roses"))),
         ("Please water the [roses](plant), thanks!", ("water", "the", Mark("roses", "plant"))),
         ("could you water [bed  two].", ("water", Mark("bed two"))),
+        ("moor at [the dry dock](pier)", ("moor", "at", "the", Mark("dry dock", "pier"))),
+        ("visit [The Hague]", ("visit", Mark("The Hague"))),
         ("go, then stop", ("go", ",", "then", "stop")),
         ("thanks", ("thanks",)),
         ("check if [room two] is empty", ("check", "if", Mark("room two"), "is", "empty")),

@@ -182,3 +182,16 @@ def test_each_listed_plural_is_understood(noun):
     for form in PLURALS[noun]:
         assert form in spellings(noun)
         assert noun in spellings(form)
+
+
+@pytest.mark.parametrize(
+    ("noun", "said"),
+    [
+        ("cup", "the cup"),
+        ("bed two", "bed two"),
+        ("the dry dock", "the dry dock"),
+        ("my mug", "my mug"),
+    ],
+)
+def test_a_phrase_has_one_determiner_at_most(noun, said):
+    assert definite(noun) == said

@@ -200,9 +200,9 @@ def test_english_is_written_into_the_lines_and_stored(call_as, adam, admin, worl
 def test_english_of_the_world_grows_with_its_arguments(adam, world):
     adam.post(PAGE, {"lines": "water the [roses](plant)\n# water: wet {1}"})
     adam.post(PAGE, {"lines": "water the [roses]\n# water: something else"})
-    assert Predicate.objects.get().gloss == "wet {1}"
+    assert Predicate.objects.get().gloss == "something else"
     adam.post(PAGE, {"lines": "water the [roses] in [bed two](bed)"})
-    assert Predicate.objects.get().gloss == "wet {1} | water {1} in {2}"
+    assert Predicate.objects.get().gloss == "something else | water {1} in {2}"
     assert Predicate.objects.get().signatures == [["plant"], ["plant", "bed"]]
 
 
